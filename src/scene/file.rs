@@ -1,0 +1,81 @@
+//! Scene files: TOML in, a [`Scene`] and settings out; unknown keys are refused.
+
+use serde::Deserialize;
+
+use super::{BodySpec, Scene, SceneError};
+use crate::force::Forces;
+use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver};
+
+/// The keys of a scene file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    about: String,
+    #[serde(default)]
+    settings: FileSettings,
+    #[serde(default)]
+    forces: Forces,
+    #[serde(default)]
+    body: Vec<BodySpec>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileSettings {
+    dt: Option<f64>,
+    steps: Option<u64>,
+    integrator: Option<Integrator>,
+    solver: Option<Solver>,
+    substeps: Option<u32>,
+    broad: Option<Broad>,
+    lanes: Option<usize>,
+    precision: Option<Precision>,
+    skip: Option<String>,
+}
+
+/// Reads a scene file and the settings it asks for (defaults elsewhere).
+///
+/// # Errors
+/// A file that cannot be read, is not TOML, has unknown keys or values of the wrong type, a bad field or
+/// setting; bodies are checked when a world takes them in.
+pub fn read(path: &str) -> Result<(Scene, Settings), SceneError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| SceneError::Unreadable { path: path.to_owned(), why: e.to_string() })?;
+    parse(path, &text)
+}
+
+/// Like [`read`], from text; `path` names it in errors.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
+    let syntax = |why: String| SceneError::Syntax { path: path.to_owned(), why };
+    let file: File = toml::from_str(text).map_err(|e| syntax(e.to_string()))?;
+    file.forces.check()?;
+    let setting = |why: String| SceneError::Setting { path: path.to_owned(), why };
+    let (asked, default) = (file.settings, Settings::default());
+    let precision = asked.precision.unwrap_or(default.precision);
+    let skips = asked.skip.map_or(Ok(default.skips), |s| s.parse::<Skips>());
+    let settings = Settings {
+        dt_secs: asked.dt.unwrap_or(default.dt_secs),
+        integrator: asked.integrator.unwrap_or(default.integrator),
+        solver: asked.solver.unwrap_or(default.solver),
+        substeps: asked.substeps.unwrap_or(default.substeps),
+        broad: asked.broad.unwrap_or(default.broad),
+        precision,
+        lanes: asked.lanes.unwrap_or(default.with_precision(precision).lanes),
+        skips: skips.map_err(|e| setting(e.to_string()))?,
+    };
+    settings.check().map_err(|e| setting(e.to_string()))?;
+    let scene = Scene {
+        name: path.to_owned(),
+        about: file.about,
+        bodies: file.body,
+        forces: file.forces,
+        dt_secs: settings.dt_secs,
+        steps: asked.steps.unwrap_or(600),
+        seed: 0,
+    };
+    Ok((scene, settings))
+}

@@ -1,0 +1,256 @@
+//! Scenes: what is simulated, in `f64` and without an engine.
+//!
+//! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
+//! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
+//! [`file`](mod@file) reads them from TOML.
+
+pub mod file;
+pub mod mixes;
+pub mod named;
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use crate::force::Forces;
+use crate::shape::{Shape, ShapeError};
+
+pub use named::{SCENES, SceneInfo, by_name};
+
+/// What forces and contacts may do to a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyKind {
+    /// Never moves.
+    Static,
+    /// Moves with the velocity it is given; nothing changes it.
+    Kinematic,
+    /// Moves by forces and contacts.
+    #[default]
+    Dynamic,
+}
+
+/// A shape as it is written down; checked when it becomes a [`Shape`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeSpec {
+    /// Radius, metres.
+    Circle(f64),
+    /// Half-extents, metres.
+    Box([f64; 2]),
+    /// Outline, metres, about the body's position; clockwise outlines are reversed.
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl ShapeSpec {
+    /// Checks it.
+    ///
+    /// # Errors
+    /// Those of [`Shape::circle`], [`Shape::rectangle`] and [`Shape::polygon`].
+    pub fn build(&self) -> Result<Shape, ShapeError> {
+        match self {
+            Self::Circle(radius) => Shape::circle(*radius),
+            Self::Box([x, y]) => Shape::rectangle(*x, *y),
+            Self::Polygon(outline) => {
+                let outline: Vec<_> = outline.iter().map(|&v| DVec2::from(v)).collect();
+                Shape::polygon(&outline)
+            }
+        }
+    }
+}
+
+fn half() -> f64 {
+    0.5
+}
+fn all_bits() -> u32 {
+    u32::MAX
+}
+fn first_bit() -> u32 {
+    1
+}
+
+/// A body as it is written down. Metres, kilograms, seconds, radians; y up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Its form.
+    pub shape: ShapeSpec,
+    /// Static, kinematic or dynamic.
+    #[serde(default)]
+    pub kind: BodyKind,
+    /// Where the shape's origin lies (for a polygon the origin of its outline, not its centroid).
+    pub position: [f64; 2],
+    /// Attitude, rad, counter-clockwise.
+    #[serde(default)]
+    pub angle: f64,
+    /// Velocity of the centroid, m/s.
+    #[serde(default)]
+    pub velocity: [f64; 2],
+    /// rad/s, counter-clockwise.
+    #[serde(default)]
+    pub angular_velocity: f64,
+    /// Kilograms; excludes `density`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<f64>,
+    /// kg/m²; 1 where neither it nor `mass` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// Coulomb coefficient; a pair has the smaller of its two.
+    #[serde(default = "half")]
+    pub friction: f64,
+    /// Coefficient of restitution, 0 to 1; a pair has the smaller of its two.
+    #[serde(default)]
+    pub restitution: f64,
+    /// The categories it is in, one bit each.
+    #[serde(default = "first_bit")]
+    pub category: u32,
+    /// The categories it collides with.
+    #[serde(default = "all_bits")]
+    pub collides_with: u32,
+    /// Constant force at the centroid, N.
+    #[serde(default)]
+    pub force: [f64; 2],
+    /// Constant torque, N·m.
+    #[serde(default)]
+    pub torque: f64,
+}
+
+impl BodySpec {
+    /// A dynamic body at rest with the defaults of a scene file.
+    pub fn new(shape: ShapeSpec, position: [f64; 2]) -> Self {
+        Self {
+            shape,
+            kind: BodyKind::Dynamic,
+            position,
+            angle: 0.0,
+            velocity: [0.0; 2],
+            angular_velocity: 0.0,
+            mass: None,
+            density: None,
+            friction: half(),
+            restitution: 0.0,
+            category: first_bit(),
+            collides_with: all_bits(),
+            force: [0.0; 2],
+            torque: 0.0,
+        }
+    }
+
+    /// The same body, immovable.
+    #[must_use]
+    pub fn fixed(self) -> Self {
+        Self { kind: BodyKind::Static, ..self }
+    }
+
+    /// The same body with restitution and friction.
+    #[must_use]
+    pub fn surface(self, restitution: f64, friction: f64) -> Self {
+        Self { restitution, friction, ..self }
+    }
+
+    /// The same body with a mass, kg.
+    #[must_use]
+    pub fn mass(self, mass: f64) -> Self {
+        Self { mass: Some(mass), ..self }
+    }
+
+    /// The same body turned by `angle` rad.
+    #[must_use]
+    pub fn turned(self, angle: f64) -> Self {
+        Self { angle, ..self }
+    }
+
+    /// The same body moving.
+    #[must_use]
+    pub fn moving(self, velocity: [f64; 2], angular_velocity: f64) -> Self {
+        Self { velocity, angular_velocity, ..self }
+    }
+}
+
+/// What is simulated: bodies in order, and the fields they move in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Its name, with its parameter: `circles`, `stack/10`.
+    pub name: String,
+    /// What it shows, in a sentence.
+    pub about: String,
+    /// The bodies, in the order of their ids.
+    pub bodies: Vec<BodySpec>,
+    /// The fields.
+    pub forces: Forces,
+    /// The step it is meant to run with, seconds.
+    pub dt_secs: f64,
+    /// The steps that show what it is about.
+    pub steps: u64,
+    /// What its random numbers came from; 0 where it has none.
+    pub seed: u64,
+}
+
+impl Scene {
+    /// Bodies that are not static.
+    pub fn movable(&self) -> usize {
+        self.bodies.iter().filter(|b| b.kind != BodyKind::Static).count()
+    }
+}
+
+/// Why a scene was refused: the item, the field, the value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// No such name.
+    #[error("unknown scene '{name}': one of {choices}, or the path of a .toml file")]
+    UnknownScene {
+        /// What was asked for.
+        name: String,
+        /// The names.
+        choices: String,
+    },
+    /// The part after the slash is not what the scene takes.
+    #[error("scene '{scene}' takes {takes} after the slash, got '{given}'")]
+    Parameter {
+        /// The scene.
+        scene: String,
+        /// What it takes.
+        takes: &'static str,
+        /// What was given.
+        given: String,
+    },
+    /// The number of bodies cannot be set, or not to this.
+    #[error("scene '{scene}': bodies {problem}, got {given}")]
+    Bodies {
+        /// The scene.
+        scene: String,
+        /// What is wrong.
+        problem: &'static str,
+        /// What was given.
+        given: usize,
+    },
+    /// A file could not be read.
+    #[error("cannot read scene file {path}: {why}")]
+    Unreadable {
+        /// Its path.
+        path: String,
+        /// The system's reason.
+        why: String,
+    },
+    /// A file is not a scene.
+    #[error("scene file {path}: {why}")]
+    Syntax {
+        /// Its path.
+        path: String,
+        /// Where and why.
+        why: String,
+    },
+    /// A field's coefficients are bad.
+    #[error(transparent)]
+    Force(#[from] crate::force::ForceError),
+    /// A body is bad.
+    #[error(transparent)]
+    Body(#[from] crate::body::BodyError),
+    /// A setting in a file is bad.
+    #[error("scene file {path}: {why}")]
+    Setting {
+        /// Its path.
+        path: String,
+        /// Field and value.
+        why: String,
+    },
+}

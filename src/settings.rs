@@ -1,0 +1,277 @@
+//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips.
+
+use serde::{Deserialize, Serialize};
+
+/// A value that is not among the choices.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("unknown {what} '{given}': one of {choices}")]
+pub struct UnknownName {
+    /// What was asked for, e.g. `integrator`.
+    pub what: &'static str,
+    /// What was given.
+    pub given: String,
+    /// The choices, separated by commas.
+    pub choices: String,
+}
+
+/// Declares an enum whose variants have one name each, for the command line, scene files and JSON alike.
+macro_rules! named_enum {
+    ($(#[$meta:meta])* $name:ident, $what:literal, $($(#[$vmeta:meta])* $variant:ident = $text:literal),+ $(,)?) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub enum $name {
+            $($(#[$vmeta])* #[serde(rename = $text)] $variant,)+
+        }
+
+        impl $name {
+            /// Every choice, in order.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+            /// The name users write.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $text,)+ }
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = UnknownName;
+            fn from_str(given: &str) -> Result<Self, UnknownName> {
+                Self::ALL.iter().copied().find(|v| v.name() == given).ok_or_else(|| UnknownName {
+                    what: $what,
+                    given: given.to_owned(),
+                    choices: Self::ALL.iter().map(|v| v.name()).collect::<Vec<_>>().join(", "),
+                })
+            }
+        }
+    };
+}
+
+named_enum! {
+    /// How smooth motion is advanced; one file each in [`crate::integrate`].
+    Integrator, "integrator",
+    /// x += hv; v += ha. Order 1, gains energy.
+    ExplicitEuler = "explicit_euler",
+    /// v += ha; x += hv. Order 1, symplectic. The thesis's "Euler".
+    SemiImplicitEuler = "semi_implicit_euler",
+    /// Velocity Verlet with predicted velocity. Order 2.
+    VelocityVerlet = "velocity_verlet",
+    /// Position Verlet (leapfrog: drift, kick, drift). Order 2 for forces of position.
+    PositionVerlet = "position_verlet",
+    /// The classical Runge–Kutta method. Order 4.
+    Rk4 = "rk4",
+    /// Yoshida's composition of three leapfrogs. Order 4 for forces of position, symplectic.
+    Yoshida4 = "yoshida4",
+}
+
+named_enum! {
+    /// How contacts are resolved; one file each in [`crate::solve`].
+    Solver, "solver",
+    /// The thesis's method, cleaned: one pass, positional correction.
+    Impulse = "impulse",
+}
+
+named_enum! {
+    /// Which bodies may touch; see [`crate::broad`].
+    Broad, "broad phase",
+    /// Every pair goes to the narrow phase: for measuring.
+    Off = "off",
+    /// Each body against all later ones, in lanes.
+    Brute = "brute",
+    /// Sorted along x.
+    Sweep = "sweep",
+    /// Cells sorted by row, levels by size.
+    Grid = "grid",
+    /// Picks by counts.
+    Auto = "auto",
+}
+
+named_enum! {
+    /// The scalar a world is built on.
+    Precision, "precision",
+    /// 32-bit floats.
+    F32 = "f32",
+    /// 64-bit floats.
+    F64 = "f64",
+}
+
+named_enum! {
+    /// How long a step is.
+    Stepping, "stepping",
+    /// A fixed step; real time is caught up with by an accumulator.
+    Fixed = "fixed",
+    /// The frame's own duration: for contrast, not reproducible.
+    Variable = "variable",
+}
+
+named_enum! {
+    /// Work that is left out when a scene does not need it. All of them give the same bits on or off.
+    Skip, "skip",
+    /// Under constant force every integrator of order ≥ 2 collapses to x + hv + ½h²a, v + ha.
+    ClosedForm = "closed_form",
+    /// With no contact at all the step is one pass over the columns.
+    FreeFlight = "free_flight",
+    /// Nothing spins and no torque acts: attitudes are not touched.
+    Rotation = "rotation",
+    /// No body has friction: no tangent rows.
+    Friction = "friction",
+    /// No body bounces: no restitution terms.
+    Restitution = "restitution",
+    /// Candidate pairs are kept with a skin until a body has moved half of it.
+    PairList = "pair_list",
+    /// A pair of polygons tries the axis that parted it last before all others.
+    AxisCache = "axis_cache",
+}
+
+/// A set of [`Skip`]s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Skips(u32);
+
+impl Skips {
+    /// All of them: the default.
+    pub const ALL: Self = Self((1 << Skip::ALL.len()) - 1);
+    /// None: every stage does all its work.
+    pub const NONE: Self = Self(0);
+
+    /// Is `skip` on?
+    pub const fn has(self, skip: Skip) -> bool {
+        self.0 & (1 << skip as u32) != 0
+    }
+    /// The set with `skip` on.
+    #[must_use]
+    pub const fn with(self, skip: Skip) -> Self {
+        Self(self.0 | 1 << skip as u32)
+    }
+    /// The set with `skip` off.
+    #[must_use]
+    pub const fn without(self, skip: Skip) -> Self {
+        Self(self.0 & !(1 << skip as u32))
+    }
+}
+
+impl std::str::FromStr for Skips {
+    type Err = UnknownName;
+    /// `all`, `none`, or names separated by commas.
+    fn from_str(given: &str) -> Result<Self, UnknownName> {
+        match given {
+            "all" => Ok(Self::ALL),
+            "none" => Ok(Self::NONE),
+            list => list.split(',').try_fold(Self::NONE, |set, name| Ok(set.with(name.trim().parse()?))),
+        }
+    }
+}
+
+impl std::fmt::Display for Skips {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match *self {
+            Self::ALL => f.write_str("all"),
+            Self::NONE => f.write_str("none"),
+            some => {
+                let names: Vec<_> = Skip::ALL.iter().filter(|s| some.has(**s)).map(|s| s.name()).collect();
+                f.write_str(&names.join(","))
+            }
+        }
+    }
+}
+
+/// A setting that cannot be run with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// The step must be positive and finite.
+    #[error("dt must be positive and finite, got {0}")]
+    Dt(f64),
+    /// At least one substep.
+    #[error("substeps must be 1 to 1000, got {0}")]
+    Substeps(u32),
+    /// Lane widths are 1, 4, 8 and 16 for f32, 1 and 4 for f64.
+    #[error("lanes must be {choices} with {precision}, got {given}")]
+    Lanes {
+        /// The precision asked for.
+        precision: Precision,
+        /// The widths it has.
+        choices: &'static str,
+        /// What was given.
+        given: usize,
+    },
+}
+
+/// What a run may choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Seconds per step.
+    pub dt_secs: f64,
+    /// Smooth motion.
+    pub integrator: Integrator,
+    /// Contacts.
+    pub solver: Solver,
+    /// Integrate-and-solve rounds per step; contacts are found once per step.
+    pub substeps: u32,
+    /// Candidate pairs.
+    pub broad: Broad,
+    /// Numbers per vector: 1, 4, 8, 16 (f32) or 1, 4 (f64). Never changes a bit of a result.
+    pub lanes: usize,
+    /// The scalar.
+    pub precision: Precision,
+    /// Work left out where a scene does not need it.
+    pub skips: Skips,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            dt_secs: 1.0 / 60.0,
+            integrator: Integrator::SemiImplicitEuler,
+            solver: Solver::Impulse,
+            substeps: 1,
+            broad: Broad::Auto,
+            lanes: 8,
+            precision: Precision::F32,
+            skips: Skips::ALL,
+        }
+    }
+}
+
+impl Settings {
+    /// Lane widths of a precision.
+    pub const fn widths(precision: Precision) -> &'static [usize] {
+        match precision {
+            Precision::F32 => &[1, 4, 8, 16],
+            Precision::F64 => &[1, 4],
+        }
+    }
+
+    /// The same settings with the widest lanes of `precision` that the default uses: 8 × f32, 4 × f64.
+    #[must_use]
+    pub fn with_precision(self, precision: Precision) -> Self {
+        let lanes = match precision {
+            Precision::F32 => 8,
+            Precision::F64 => 4,
+        };
+        Self { precision, lanes, ..self }
+    }
+
+    /// Refuses what cannot be run.
+    ///
+    /// # Errors
+    /// A step that is not positive and finite, no substep, a lane width the precision does not have.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        if !(self.dt_secs > 0.0 && self.dt_secs.is_finite()) {
+            return Err(SettingsError::Dt(self.dt_secs));
+        }
+        if !(1..=1000).contains(&self.substeps) {
+            return Err(SettingsError::Substeps(self.substeps));
+        }
+        if !Self::widths(self.precision).contains(&self.lanes) {
+            let choices = match self.precision {
+                Precision::F32 => "1, 4, 8 or 16",
+                Precision::F64 => "1 or 4",
+            };
+            return Err(SettingsError::Lanes { precision: self.precision, choices, given: self.lanes });
+        }
+        Ok(())
+    }
+}
