@@ -1,1 +1,3 @@
+//! Whole steps.
+
 fn main() {}

@@ -1,1 +1,3 @@
+//! Each stage's kernel alone.
+
 fn main() {}

@@ -9,7 +9,7 @@
 //! 2, extents 2, bounding radius 1, friction 1, restitution 1: 14 reals = 56 B in f32 (112 B in f64).
 //! Cold, 21 B: kind 1, shape form 1, shape start 4, generation 4, category 4, collides-with 4,
 //! flags 1, and 2 of vertex count. Only where some body needs them: constant force and torque 3 reals
-//! (12 B), a polygon's vertices, normals and offsets in both frames 8 rows + 1 (288 B in f32).
+//! (12 B), a polygon's vertices and normals in both frames: 8 rows of 8 (256 B in f32).
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
 //! number (4 B and a trigonometric call wherever it is used).
 
@@ -114,8 +114,9 @@ pub enum Form {
 
 /// A polygon's rows, ready to be gathered: entry `k` belongs to vertex or edge `k`.
 ///
-/// Entries past the last repeat the last vertex and edge: a repeated axis or vertex changes no minimum
-/// and no maximum, so polygons of different counts may share a batch.
+/// Entries past the last repeat entry 0: a repeated axis or vertex changes no minimum and no maximum, so
+/// polygons of different counts may share a batch, and the edge from vertex k ends at vertex
+/// (k + 1) mod 8 for every count.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons<R> {
     /// Vertices in the body frame.
@@ -136,6 +137,8 @@ pub struct Polygons<R> {
     pub normal_world_x: Vec<[R; ROW]>,
     /// Normals, world axes.
     pub normal_world_y: Vec<[R; ROW]>,
+    /// Edge lengths.
+    pub length: Vec<[R; ROW]>,
     /// Vertices.
     pub count: Vec<u8>,
     /// The body that has it; 0 where it is free.
@@ -152,7 +155,6 @@ impl<R: Real> Polygons<R> {
                 &mut self.body_y,
                 &mut self.normal_body_x,
                 &mut self.normal_body_y,
-                &mut self.offset,
                 &mut self.world_x,
                 &mut self.world_y,
                 &mut self.normal_world_x,
@@ -165,13 +167,13 @@ impl<R: Real> Polygons<R> {
         }
         let outline = shape.outline();
         let normals = edge_normals(&outline);
-        let last = outline.len() - 1;
-        let row = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|k| R::from_f64(f(k.min(last))));
+        let row = |f: &dyn Fn(usize) -> f64| {
+            std::array::from_fn(|k| R::from_f64(f(if k < outline.len() { k } else { 0 })))
+        };
         self.body_x[at] = row(&|k| outline[k].x);
         self.body_y[at] = row(&|k| outline[k].y);
         self.normal_body_x[at] = row(&|k| normals[k].x);
         self.normal_body_y[at] = row(&|k| normals[k].y);
-        self.offset[at] = row(&|k| normals[k].dot(outline[k]));
         self.count[at] = outline.len() as u8;
         self.owner[at] = owner;
         at as u32
@@ -509,7 +511,7 @@ impl<R: Real> Bodies<R> {
             &self.restitution,
         ];
         let force = self.force.iter().flatten().map(Column::bytes).sum::<usize>();
-        let rows = 9 * self.polygons.owner.len() * size_of::<[R; ROW]>() + 5 * self.polygons.owner.len();
+        let rows = 8 * self.polygons.owner.len() * size_of::<[R; ROW]>() + 5 * self.polygons.owner.len();
         let cold = self.len() * (2 + 4 * 4 + 1);
         columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold
     }

@@ -88,7 +88,7 @@ impl<R: Real> Column<R> {
         bytemuck::cast_slice_mut(&mut self.lines)
     }
 
-    /// Entries and padding as lanes: ⌈len/[`PAD`]⌉·[`PAD`]/`WIDTH` values.
+    /// Entries and padding as lanes: at least ⌈len/[`PAD`]⌉·[`PAD`]/`WIDTH` values, as memory never shrinks.
     #[inline(always)]
     pub fn lanes<L: Lanes<Elem = R>>(&self) -> &[L] {
         bytemuck::cast_slice(&self.lines)

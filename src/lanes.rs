@@ -2,9 +2,9 @@
 //!
 //! A kernel is written once over [`Lanes`]. Width 1 is a plain `f32` or `f64`, so it *is* the
 //! scalar version. The trait holds only operations whose result is the same to the bit on every
-//! backend: + − × ÷ √ |x|, comparisons, select, loads, stores and transposes. Deliberately absent:
-//! fused multiply-add, approximate reciprocals, horizontal sums, `wide`'s own minimum and maximum
-//! (their answer for NaN and ±0 differs between backends) and its transcendental functions.
+//! backend: + − × ÷ √ |x|, comparisons, select, minimum and maximum (defined as a select), loads, stores and transposes.
+//! Deliberately absent: fused multiply-add, approximate reciprocals, horizontal sums and transcendental
+//! functions.
 
 use std::fmt::{Debug, Display};
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -67,7 +67,7 @@ impl Real for f32 {
     const ONE: Self = 1.0;
     const EPSILON: Self = f32::EPSILON;
     const ROUND_MAGIC: Self = 12_582_912.0; // 1.5·2²³
-    const HALF_PI: [Self; 3] = [1.570_312_5, 4.837_512_969_970_703e-4, 7.549_790_126_404_332e-8];
+    const HALF_PI: [Self; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
     const TRIG_TERMS: usize = 6;
     const FAR: Self = 1e18;
 
@@ -126,7 +126,7 @@ pub trait LaneMask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> 
 /// `WIDTH` numbers that move together.
 ///
 /// Binary operators act lane by lane. All methods give the same bits as the scalar operation in
-/// every lane, on every backend; `tests/lanes.rs` holds each of them to that.
+/// every lane, on every backend; `src/tests/oracle_lanes.rs` holds each of them to that.
 pub trait Lanes:
     Pod
     + Debug
@@ -164,6 +164,10 @@ pub trait Lanes:
     fn equals(self, other: Self) -> Self::Mask;
     /// Per lane: `if_true` where `mask` is set, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+    /// self < other ? self : other (so `other` where either is NaN or both are zero).
+    fn min(self, other: Self) -> Self;
+    /// other < self ? self : other (so `other` where either is NaN or both are zero).
+    fn max(self, other: Self) -> Self;
     /// Gathers one row per lane and transposes: element `k` of the result holds `rows[index[lane]][k]`.
     /// `index` has at least `WIDTH` entries. Panics if an index is out of range.
     fn gather_rows(rows: &[[Self::Elem; ROW]], index: &[u32]) -> [Self; ROW];
@@ -185,16 +189,6 @@ pub trait Lanes:
     #[inline(always)]
     fn lit(x: f64) -> Self {
         Self::splat(Self::Elem::from_f64(x))
-    }
-    /// self < other ? self : other (so `other` where either is NaN or both are zero).
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self::select(self.lt(other), self, other)
-    }
-    /// other < self ? self : other (so `other` where either is NaN or both are zero).
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self::select(other.lt(self), self, other)
     }
     /// The integer nearest to `x`, ties to even, for |x| < 2²² (f32) or 2⁵¹ (f64).
     #[inline(always)]
@@ -255,6 +249,14 @@ macro_rules! scalar_lanes {
                 if mask { if_true } else { if_false }
             }
             #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if other < self { self } else { other }
+            }
+            #[inline(always)]
             fn gather_rows(rows: &[[$t; ROW]], index: &[u32]) -> [Self; ROW] {
                 rows[index[0] as usize]
             }
@@ -278,6 +280,21 @@ impl LaneMask for bool {
 /// A mask over the lanes of `V`: all bits of a lane set, or none.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask<V>(V);
+
+// On x86 `fast_min` and `fast_max` are one instruction that is defined as the select; elsewhere their
+// answer for NaN and ±0 is another, so there it is the select itself.
+#[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+macro_rules! least {
+    ($a:expr, $b:expr, $mask:expr, $fast:ident) => {
+        $a.$fast($b)
+    };
+}
+#[cfg(not(any(target_arch = "x86_64", target_arch = "x86")))]
+macro_rules! least {
+    ($a:expr, $b:expr, $mask:expr, $fast:ident) => {
+        $mask.select($a, $b)
+    };
+}
 
 macro_rules! vector_lanes {
     ($v:ty, $t:ty, $n:literal, $gather:ident, $scatter:ident) => {
@@ -352,6 +369,14 @@ macro_rules! vector_lanes {
                 mask.0.select(if_true, if_false)
             }
             #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                least!(self, other, self.simd_lt(other), fast_min)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                least!(self, other, other.simd_lt(self), fast_max)
+            }
+            #[inline(always)]
             fn gather_rows(rows: &[[$t; ROW]], index: &[u32]) -> [Self; ROW] {
                 $gather(rows, index)
             }
@@ -383,8 +408,10 @@ pub mod f64s {
 
 #[inline(always)]
 fn gather_f32x8(rows: &[[f32; ROW]], index: &[u32]) -> [f32x8; ROW] {
-    let index = &index[..8];
-    f32x8::transpose(std::array::from_fn(|lane| f32x8::new(rows[index[lane] as usize])))
+    // Spelled out: `array::from_fn` here was left as a call per gather, 12 % of a step of polygons.
+    let i: &[u32; 8] = index[..8].try_into().unwrap_or_else(|_| unreachable!("a slice of eight"));
+    let row = |lane: usize| f32x8::new(rows[i[lane] as usize]);
+    f32x8::transpose([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)])
 }
 
 #[inline(always)]
@@ -397,9 +424,10 @@ fn store_f32x8(from: [f32x8; ROW], to: &mut [[f32; ROW]]) {
 
 #[inline(always)]
 fn gather_f32x16(rows: &[[f32; ROW]], index: &[u32]) -> [f32x16; ROW] {
-    let low = gather_f32x8(rows, &index[..8]);
-    let high = gather_f32x8(rows, &index[8..16]);
-    std::array::from_fn(|k| bytemuck::cast([low[k], high[k]]))
+    let [a, b, c, d, e, f, g, h] = gather_f32x8(rows, &index[..8]);
+    let [i, j, k, l, m, n, o, p] = gather_f32x8(rows, &index[8..16]);
+    let join = |low: f32x8, high: f32x8| bytemuck::cast([low, high]);
+    [join(a, i), join(b, j), join(c, k), join(d, l), join(e, m), join(f, n), join(g, o), join(h, p)]
 }
 
 #[inline(always)]
@@ -414,14 +442,14 @@ macro_rules! four_rows {
     ($v:ty, $t:ty, $gather:ident, $scatter:ident) => {
         #[inline(always)]
         fn $gather(rows: &[[$t; ROW]], index: &[u32]) -> [$v; ROW] {
-            let index = &index[..4];
-            let halves: [[$v; 2]; 4] =
-                std::array::from_fn(|lane| rows[index[lane] as usize]).map(|row: [$t; ROW]| {
-                    [<$v>::new([row[0], row[1], row[2], row[3]]), <$v>::new([row[4], row[5], row[6], row[7]])]
-                });
-            let low = <$v>::transpose(halves.map(|h| h[0]));
-            let high = <$v>::transpose(halves.map(|h| h[1]));
-            [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]]
+            let i: &[u32; 4] = index[..4].try_into().unwrap_or_else(|_| unreachable!("a slice of four"));
+            let row = |lane: usize| &rows[i[lane] as usize];
+            let low = |r: &[$t; ROW]| <$v>::new([r[0], r[1], r[2], r[3]]);
+            let high = |r: &[$t; ROW]| <$v>::new([r[4], r[5], r[6], r[7]]);
+            let (p, q, r, s) = (row(0), row(1), row(2), row(3));
+            let [a, b, c, d] = <$v>::transpose([low(p), low(q), low(r), low(s)]);
+            let [e, f, g, h] = <$v>::transpose([high(p), high(q), high(r), high(s)]);
+            [a, b, c, d, e, f, g, h]
         }
 
         #[inline(always)]

@@ -121,10 +121,6 @@ named_enum! {
     Friction = "friction",
     /// No body bounces: no restitution terms.
     Restitution = "restitution",
-    /// Candidate pairs are kept with a skin until a body has moved half of it.
-    PairList = "pair_list",
-    /// A pair of polygons tries the axis that parted it last before all others.
-    AxisCache = "axis_cache",
 }
 
 /// A set of [`Skip`]s.
@@ -251,7 +247,7 @@ impl Settings {
             Precision::F32 => 8,
             Precision::F64 => 4,
         };
-        Self { precision, lanes, ..self }
+        Self { lanes, precision, ..self }
     }
 
     /// Refuses what cannot be run.

@@ -26,7 +26,7 @@ mod velocity_verlet;
 mod yoshida4;
 
 use crate::body::Bodies;
-use crate::column::Column;
+use crate::column::{Column, PAD};
 use crate::force::{Field, Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, ROW, Real};
 use crate::settings::{Integrator, Skip, Skips};
@@ -140,7 +140,8 @@ impl<R: Real> Motion<R> {
         for column in self.moved.iter_mut().chain(&mut self.free).chain(&mut self.ahead) {
             column.resize(len);
         }
-        self.rows.resize(len * ROW);
+        // A row for every lane of the last block, padding included.
+        self.rows.resize(len.next_multiple_of(PAD) * ROW);
     }
 
     /// The velocity the scheme predicted before contacts, in a slot: where a non-finite state began.

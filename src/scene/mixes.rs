@@ -74,7 +74,7 @@ fn statics(scale: f64, wall_height: f64) -> Vec<BodySpec> {
     let half = |x: f64, y: f64| ShapeSpec::Box([x / PX_PER_M * scale, y / PX_PER_M * scale]);
     let wall = |x: f64| {
         // Extended upward: the bottom stays where it was.
-        let [x, bottom] = place(x, 600.0);
+        let [x, bottom] = place(x, 555.0);
         let half_height = wall_height / 2.0;
         BodySpec::new(ShapeSpec::Box([30.0 / PX_PER_M * scale, half_height]), [x, bottom + half_height])
     };
@@ -82,7 +82,7 @@ fn statics(scale: f64, wall_height: f64) -> Vec<BodySpec> {
         BodySpec::new(ShapeSpec::Circle(50.0 / PX_PER_M * scale), place(200.0, 300.0)).surface(1.0, 0.5),
         BodySpec::new(half(50.0, 50.0), place(500.0, 300.0))
             .surface(0.5, 0.5)
-            .turned(0.45 * std::f64::consts::PI),
+            .turned(-0.45 * std::f64::consts::PI),
         BodySpec::new(half(400.0, 30.0), place(400.0, 585.0)).surface(0.2, 0.2),
         wall(15.0).surface(0.2, 0.2),
         wall(785.0).surface(0.2, 0.2),

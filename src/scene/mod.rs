@@ -144,7 +144,7 @@ impl BodySpec {
     /// The same body with restitution and friction.
     #[must_use]
     pub fn surface(self, restitution: f64, friction: f64) -> Self {
-        Self { restitution, friction, ..self }
+        Self { friction, restitution, ..self }
     }
 
     /// The same body with a mass, kg.

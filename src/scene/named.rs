@@ -17,6 +17,18 @@ pub enum Takes {
     Height,
 }
 
+impl Takes {
+    /// In a word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nothing => "none",
+            Self::Bodies => "bodies",
+            Self::Pairs => "pairs",
+            Self::Height => "boxes",
+        }
+    }
+}
+
 /// One line of the table of scenes.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {

@@ -1,0 +1,174 @@
+//! Long and huge bodies: floors, walls, anything whose bounding circle says little.
+//!
+//! Each is tested against all bodies in lanes: bounding circles first, then the other's circle against
+//! the body's oriented box, clamped in the box's frame.
+
+use super::{meet, ordered};
+use crate::body::{Bodies, Form};
+use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
+use crate::scene::BodyKind;
+use crate::vec2::{Rot, Vec2};
+
+/// A box or polygon this many times longer than wide is long.
+const LONG_ASPECT: f64 = 3.0;
+/// A body this many times larger than the median movable body is huge.
+const HUGE_RATIO: f64 = 4.0;
+
+/// An oriented box that holds a long body.
+#[derive(Clone, Copy, Debug)]
+struct Bound<R> {
+    slot: u32,
+    /// Centre in the body frame, metres.
+    centre: [R; 2],
+    /// Half-extents, widened like the bounding radius.
+    half: [R; 2],
+}
+
+/// The long bodies of a world, and the others.
+#[derive(Clone, Debug)]
+pub(super) struct LongBodies<R> {
+    bounds: Vec<Bound<R>>,
+    plain: Vec<u32>,
+}
+
+impl<R> Default for LongBodies<R> {
+    fn default() -> Self {
+        Self { bounds: Vec::new(), plain: Vec::new() }
+    }
+}
+
+impl<R: Real> LongBodies<R> {
+    pub(super) fn len(&self) -> usize {
+        self.bounds.len()
+    }
+
+    pub(super) fn plain_slots(&self) -> &[u32] {
+        &self.plain
+    }
+
+    /// Splits the living bodies into long and plain ones.
+    pub(super) fn classify(&mut self, bodies: &Bodies<R>) {
+        let mut radii: Vec<f64> = bodies
+            .slots()
+            .filter(|&slot| bodies.kind(slot) != BodyKind::Static)
+            .map(|slot| bodies.radius[slot].to_f64())
+            .collect();
+        radii.sort_unstable_by(f64::total_cmp);
+        let median = radii.get(radii.len() / 2).copied().unwrap_or(f64::INFINITY);
+        self.bounds.clear();
+        self.plain.clear();
+        for slot in bodies.slots() {
+            let (low, high) = extent(bodies, slot);
+            let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
+            let aspect = half[0].max(half[1]) / half[0].min(half[1]);
+            if aspect >= LONG_ASPECT || bodies.radius[slot].to_f64() > HUGE_RATIO * median {
+                self.bounds.push(Bound {
+                    slot: slot as u32,
+                    centre: [
+                        R::from_f64(f64::midpoint(low[0], high[0])),
+                        R::from_f64(f64::midpoint(low[1], high[1])),
+                    ],
+                    half: half.map(|h| R::from_f64(h * (1.0 + 1e-5))),
+                });
+            } else {
+                self.plain.push(slot as u32);
+            }
+        }
+    }
+
+    /// Appends the pairs that have a long body in them.
+    pub(super) fn find<L: Lanes<Elem = R>>(
+        &self,
+        bodies: &Bodies<R>,
+        half_margin: R,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        let (xs, ys) = (bodies.x.lanes::<L>(), bodies.y.lanes::<L>());
+        let radii = bodies.radius.lanes::<L>();
+        for bound in &self.bounds {
+            let own = Placed::<L>::new(bodies, bound, half_margin);
+            for chunk in 0..bodies.len().div_ceil(L::WIDTH) {
+                let reach = radii[chunk] + L::splat(half_margin);
+                let hits = own.meets(xs[chunk], ys[chunk], reach);
+                for lane in set_lanes(hits.bits()) {
+                    self.accept(bodies, half_margin, bound, (chunk * L::WIDTH + lane) as u32, pairs);
+                }
+            }
+        }
+    }
+
+    /// A pair of long bodies is met twice: the lower slot reports it, if the other's box agrees.
+    fn accept(
+        &self,
+        bodies: &Bodies<R>,
+        half_margin: R,
+        bound: &Bound<R>,
+        other: u32,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        if other == bound.slot {
+            return;
+        }
+        if let Ok(at) = self.bounds.binary_search_by_key(&other, |b| b.slot) {
+            let k = bound.slot as usize;
+            let theirs = Placed::<R>::new(bodies, &self.bounds[at], half_margin);
+            let reach = bodies.radius[k] + half_margin;
+            if other < bound.slot || !theirs.meets(bodies.x[k], bodies.y[k], reach).any() {
+                return;
+            }
+        }
+        pairs.push(ordered(bound.slot, other));
+    }
+}
+
+/// A long body where it is now, in every lane.
+struct Placed<L> {
+    x: L,
+    y: L,
+    r: L,
+    rot: Rot<L>,
+    centre: Vec2<L>,
+    half: Vec2<L>,
+}
+
+impl<L: Lanes> Placed<L> {
+    fn new(bodies: &Bodies<L::Elem>, bound: &Bound<L::Elem>, half_margin: L::Elem) -> Self {
+        let k = bound.slot as usize;
+        let half = bound.half.map(|h| h + half_margin);
+        Self {
+            x: L::splat(bodies.x[k]),
+            y: L::splat(bodies.y[k]),
+            r: L::splat(bodies.radius[k] + half_margin),
+            rot: Rot { c: L::splat(bodies.c[k]), s: L::splat(bodies.s[k]) },
+            centre: Vec2::splat(bound.centre),
+            half: Vec2::splat(half),
+        }
+    }
+
+    /// Which circles meet both the bounding circle and the oriented box. Slots that are holes, and the
+    /// world, are out of reach of both.
+    #[inline(always)]
+    fn meets(&self, x: L, y: L, r: L) -> L::Mask {
+        let local = self.rot.apply_inverse(Vec2::new(x - self.x, y - self.y)) - self.centre;
+        let beyond = |v: L, half: L| L::zero().max(v.abs() - half);
+        let gap = Vec2::new(beyond(local.x, self.half.x), beyond(local.y, self.half.y));
+        meet(self.x, self.y, self.r, x, y, r) & gap.length_squared().le(r * r)
+    }
+}
+
+/// Lower and upper corner of the body's shape in its own frame.
+fn extent<R: Real>(bodies: &Bodies<R>, slot: usize) -> ([f64; 2], [f64; 2]) {
+    let (hx, hy) = (bodies.extent_x[slot].to_f64(), bodies.extent_y[slot].to_f64());
+    match bodies.form(slot) {
+        Form::Circle => ([-hx, -hx], [hx, hx]),
+        Form::Box => ([-hx, -hy], [hx, hy]),
+        Form::Polygon => {
+            let at = bodies.shapes(slot).start;
+            let range = |row: &[R]| {
+                row.iter().map(|v| v.to_f64()).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)))
+            };
+            let (x, y) = (range(&bodies.polygons.body_x[at]), range(&bodies.polygons.body_y[at]));
+            ([x.0, y.0], [x.1, y.1])
+        }
+    }
+}

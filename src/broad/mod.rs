@@ -1,0 +1,190 @@
+//! Broad phase: which bodies may touch.
+//!
+//! A pair is a candidate when its bounding circles meet and, where one of the two is *long* (a box or
+//! polygon of aspect ratio ≥ 3, or anything four times the median size), the other's circle also meets
+//! its oriented box. That definition is symmetric and evaluated with the same operations everywhere, so
+//! all methods give the same pairs in the same order: by slot, a < b.
+//!
+//! | method | work | picked by `auto` |
+//! |---|---|---|
+//! | `off` | no test: all pairs | never |
+//! | `brute` | each body against all later ones, in lanes | up to [`BRUTE_LIMIT`] bodies |
+//! | `sweep` | sorted along x, in lanes while x-ranges overlap | never: lost to `grid` in every scene measured |
+//! | `grid` | sorted cells, three runs of whole lanes per body, levels by size | above |
+//!
+//! Long bodies never enter cells or x-order: each is tested against all others in lanes.
+
+mod brute;
+mod grid;
+mod long;
+mod order;
+mod sweep;
+
+use crate::body::Bodies;
+use crate::column::Column;
+use crate::lanes::{Lanes, Real};
+use crate::settings::Broad;
+
+/// Up to this many bodies `auto` compares all with all.
+pub const BRUTE_LIMIT: usize = 400;
+
+/// Bounding circles of some bodies, packed: the columns all methods test in lanes.
+///
+/// Padding is out of reach.
+#[derive(Clone, Debug)]
+pub(crate) struct Circles<R: Real> {
+    x: Column<R>,
+    y: Column<R>,
+    /// Bounding radius plus half the margin.
+    r: Column<R>,
+    slot: Vec<u32>,
+}
+
+impl<R: Real> Circles<R> {
+    fn new() -> Self {
+        Self { x: Column::new(R::FAR), y: Column::new(R::FAR), r: Column::new(R::ZERO), slot: Vec::new() }
+    }
+
+    fn len(&self) -> usize {
+        self.slot.len()
+    }
+
+    fn resize(&mut self, len: usize) {
+        // Shrinking to nothing first makes all padding inert again.
+        for column in [&mut self.x, &mut self.y, &mut self.r] {
+            column.resize(0);
+            column.resize(len + 2 * 16);
+            column.resize(len);
+        }
+        self.slot.resize(len, 0);
+    }
+
+    fn set(&mut self, at: usize, circle: (R, R, R, u32)) {
+        (self.x[at], self.y[at], self.r[at], self.slot[at]) = circle;
+    }
+
+    fn get(&self, at: usize) -> (R, R, R, u32) {
+        (self.x[at], self.y[at], self.r[at], self.slot[at])
+    }
+
+    /// Which of the `WIDTH` circles from `at` on (any alignment) meet the given one.
+    #[inline(always)]
+    fn meeting<L: Lanes<Elem = R>>(&self, at: usize, x: L, y: L, r: L) -> L::Mask {
+        let load = |column: &Column<R>| L::load(&column.padded()[at..]);
+        meet(x, y, r, load(&self.x), load(&self.y), load(&self.r))
+    }
+}
+
+/// Do two bounding circles meet? Symmetric to the bit.
+#[inline(always)]
+fn meet<L: Lanes>(ax: L, ay: L, ar: L, bx: L, by: L, br: L) -> L::Mask {
+    let (dx, dy, reach) = (ax - bx, ay - by, ar + br);
+    (dx * dx + dy * dy).le(reach * reach)
+}
+
+/// What the broad phase did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BroadCounts {
+    /// Pairs that passed the bounding tests (`off`: all pairs).
+    pub candidates: usize,
+    /// Of these, pairs that may collide: one of them dynamic, categories and masks agreeing.
+    pub pairs: usize,
+}
+
+/// Finds candidate pairs; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct BroadPhase<R: Real> {
+    pairs: Vec<[u32; 2]>,
+    circles: Circles<R>,
+    long: long::LongBodies<R>,
+    order: order::PairOrder,
+    sweep: sweep::Sweep<R>,
+    grid: grid::Grid<R>,
+    revision: Option<u64>,
+}
+
+impl<R: Real> Default for BroadPhase<R> {
+    fn default() -> Self {
+        Self {
+            pairs: Vec::new(),
+            circles: Circles::new(),
+            long: long::LongBodies::default(),
+            order: order::PairOrder::default(),
+            sweep: sweep::Sweep::default(),
+            grid: grid::Grid::default(),
+            revision: None,
+        }
+    }
+}
+
+impl<R: Real> BroadPhase<R> {
+    /// The pairs of the last [`BroadPhase::find`]: slots a < b, ordered by a, then b.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// The method `auto` stands for with this many bodies.
+    pub fn resolve(method: Broad, bodies: usize) -> Broad {
+        match method {
+            Broad::Auto if bodies <= BRUTE_LIMIT => Broad::Brute,
+            Broad::Auto => Broad::Grid,
+            chosen => chosen,
+        }
+    }
+
+    /// Finds all pairs closer than `margin` metres by their bounds.
+    pub fn find<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, margin: R) -> BroadCounts {
+        self.pairs.clear();
+        let changed = self.revision != Some(bodies.revision());
+        if changed {
+            self.long.classify(bodies);
+            self.revision = Some(bodies.revision());
+        }
+        let half_margin = R::from_f64(0.5) * margin;
+        let method = Self::resolve(method, bodies.live());
+        if method == Broad::Off {
+            all_pairs(bodies, &mut self.pairs);
+        } else {
+            self.pack_plain(bodies, half_margin);
+            match method {
+                Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
+                Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
+                _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
+            }
+            self.long.find::<L>(bodies, half_margin, &mut self.pairs);
+        }
+        let candidates = self.pairs.len();
+        self.pairs.retain(|&[a, b]| bodies.may_collide(a as usize, b as usize));
+        self.order.sort(&mut self.pairs, bodies.len());
+        BroadCounts { candidates, pairs: self.pairs.len() }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let circles = self.circles.x.bytes() * 3 + self.circles.slot.capacity() * 4;
+        self.pairs.capacity() * 8 + circles + self.grid.bytes() + self.sweep.bytes()
+    }
+
+    fn pack_plain(&mut self, bodies: &Bodies<R>, half_margin: R) {
+        let plain = bodies.live() - self.long.len();
+        if self.circles.len() != plain {
+            self.circles.resize(plain);
+        }
+        for (at, slot) in self.long.plain_slots().iter().enumerate() {
+            let k = *slot as usize;
+            self.circles.set(at, (bodies.x[k], bodies.y[k], bodies.radius[k] + half_margin, *slot));
+        }
+    }
+}
+
+fn all_pairs<R: Real>(bodies: &Bodies<R>, pairs: &mut Vec<[u32; 2]>) {
+    for a in bodies.slots() {
+        pairs.extend((a + 1..bodies.len()).filter(|&b| bodies.is_alive(b)).map(|b| [a as u32, b as u32]));
+    }
+}
+
+/// Slots in ascending order.
+#[inline(always)]
+fn ordered(a: u32, b: u32) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}

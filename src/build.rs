@@ -1,0 +1,33 @@
+//! Writes down what a report must say about its build: compiler, commit, profile, flags.
+
+use std::process::Command;
+
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}
+
+fn main() {
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    let version = output(&rustc, &["--version"]);
+    let commit = output("git", &["rev-parse", "--short=12", "HEAD"]).map(|commit| {
+        let changed = output("git", &["status", "--porcelain", "--untracked-files=no"]);
+        if changed.is_some_and(|c| !c.is_empty()) { format!("{commit}+changes") } else { commit }
+    });
+    // Flags, not paths: what decides the code that was generated.
+    let flags = std::env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\u{1f}', " ");
+    let profile = std::env::var("PROFILE").unwrap_or_default();
+    let level = std::env::var("OPT_LEVEL").unwrap_or_default();
+    for (name, value) in [
+        ("LAMINA_RUSTC", version.unwrap_or_else(|| "unknown".to_owned())),
+        ("LAMINA_COMMIT", commit.unwrap_or_else(|| "unknown".to_owned())),
+        ("LAMINA_FLAGS", flags),
+        ("LAMINA_PROFILE", format!("{profile}, opt-level {level}")),
+    ] {
+        println!("cargo::rustc-env={name}={value}");
+    }
+    println!("cargo::rerun-if-changed=.git/HEAD");
+    println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    println!("cargo::rerun-if-changed=src/build.rs");
+}

@@ -1,0 +1,185 @@
+//! `lamina run`: one scene, once.
+
+use std::time::Instant;
+
+use anyhow::Context;
+use lamina2d::measure::Stage;
+use lamina2d::report::Timing;
+use lamina2d::scene::{self, Scene};
+use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver};
+use lamina2d::simulation::{Simulation, simulate};
+use serde_json::{Map, Value, json};
+
+use super::{output, refuse};
+
+/// Arguments of `lamina run`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// A scene's name, `name/parameter`, or the path of a .toml file.
+    scene: String,
+    /// Number of bodies, pairs or boxes, as the scene takes it.
+    #[arg(long)]
+    bodies: Option<usize>,
+    /// Steps to run [default: the scene's own].
+    #[arg(long)]
+    steps: Option<u64>,
+    /// Seconds per step [default: the scene's own, 1/60].
+    #[arg(long)]
+    dt: Option<f64>,
+    /// explicit_euler, semi_implicit_euler, velocity_verlet, position_verlet, rk4 or yoshida4.
+    #[arg(long)]
+    integrator: Option<Integrator>,
+    /// impulse.
+    #[arg(long)]
+    solver: Option<Solver>,
+    /// Integrate-and-solve rounds per step.
+    #[arg(long)]
+    substeps: Option<u32>,
+    /// off, brute, sweep, grid or auto.
+    #[arg(long)]
+    broad: Option<Broad>,
+    /// Numbers per vector: 1, 4, 8 or 16 (f32), 1 or 4 (f64).
+    #[arg(long)]
+    lanes: Option<usize>,
+    /// f32 or f64.
+    #[arg(long)]
+    precision: Option<Precision>,
+    /// Where the scene's random numbers come from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Work to leave out where a scene does not need it: all, none, or names separated by commas.
+    #[arg(long)]
+    skip: Option<Skips>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
+    let (scene, settings) = load(args)?;
+    let steps = args.steps.unwrap_or(scene.steps);
+    if steps == 0 {
+        return Err(refuse(anyhow::anyhow!("--steps must be at least 1, got 0")));
+    }
+    let mut world = simulate(&scene, settings).map_err(refuse)?;
+    let bar = output::progress(steps, "run");
+    let mut samples_ms = Vec::new();
+    for step in 0..steps {
+        let start = Instant::now();
+        world.step(settings.dt_secs).with_context(|| format!("scene {}", scene.name))?;
+        samples_ms.push(start.elapsed().as_secs_f64() * 1e3);
+        if step % 64 == 0 {
+            bar.set_position(step);
+        }
+    }
+    bar.finish_and_clear();
+    let result = describe(&scene, steps, world.as_ref(), &Timing::of(&samples_ms));
+    if args.json { output::print_json(&result) } else { print_table(&result) }
+}
+
+fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
+    let is_file =
+        std::path::Path::new(&args.scene).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    let (scene, asked) = if is_file {
+        if args.bodies.is_some() {
+            return Err(refuse(anyhow::anyhow!("--bodies: a scene file has the bodies it lists")));
+        }
+        scene::file::read(&args.scene).map_err(refuse)?
+    } else {
+        let scene = scene::by_name(&args.scene, args.bodies, args.seed).map_err(refuse)?;
+        let settings = Settings { dt_secs: scene.dt_secs, ..Settings::default() };
+        (scene, settings)
+    };
+    let precision = args.precision.unwrap_or(asked.precision);
+    let default_lanes =
+        if precision == asked.precision { asked.lanes } else { asked.with_precision(precision).lanes };
+    let settings = Settings {
+        dt_secs: args.dt.unwrap_or(asked.dt_secs),
+        integrator: args.integrator.unwrap_or(asked.integrator),
+        solver: args.solver.unwrap_or(asked.solver),
+        substeps: args.substeps.unwrap_or(asked.substeps),
+        broad: args.broad.unwrap_or(asked.broad),
+        lanes: args.lanes.unwrap_or(default_lanes),
+        precision,
+        skips: args.skip.unwrap_or(asked.skips),
+    };
+    settings.check().map_err(refuse)?;
+    Ok((scene, settings))
+}
+
+/// The JSON object of a run; the table shows the same fields.
+fn describe(scene: &Scene, steps: u64, world: &dyn Simulation, timing: &Timing) -> Map<String, Value> {
+    let (settings, counts, times) = (world.settings(), world.counts(), world.times());
+    let stages: Map<_, _> =
+        Stage::ALL.iter().map(|s| (s.name().to_owned(), json!(times.mean_ns(*s).round()))).collect();
+    let skipped: Map<_, _> =
+        Skip::ALL.iter().map(|s| (s.name().to_owned(), json!(counts.skipped[*s as usize]))).collect();
+    let (overlap, sums) = (world.penetration(), world.invariants());
+    let fields = json!({
+        "scene": scene.name,
+        "bodies": world.bodies(),
+        "steps": steps,
+        "dt": settings.dt_secs,
+        "integrator": settings.integrator,
+        "solver": settings.solver,
+        "substeps": settings.substeps,
+        "broad": settings.broad,
+        "broad_in_use": world.broad_in_use(),
+        "lanes": settings.lanes,
+        "precision": settings.precision,
+        "seed": scene.seed,
+        "skip": settings.skips.to_string(),
+        "ms_per_step": timing,
+        "stages_ns": stages,
+        "counts": {
+            "candidates": counts.candidates,
+            "pairs": counts.pairs,
+            "contacts": counts.contacts,
+            "skipped": skipped,
+        },
+        "error": {
+            "max_penetration": overlap.max,
+            "mean_penetration": overlap.mean,
+            "kinetic_energy": sums.kinetic_energy,
+            "potential_energy": sums.potential_energy,
+            "momentum": sums.momentum,
+            "angular_momentum": sums.angular_momentum,
+        },
+        "hash": format!("{:016x}", world.hash()),
+    });
+    match fields {
+        Value::Object(map) => map,
+        _ => unreachable!("an object literal"),
+    }
+}
+
+fn print_table(result: &Map<String, Value>) -> anyhow::Result<()> {
+    let mut rows = Vec::new();
+    for (key, value) in result {
+        flatten(key, value, &mut rows);
+    }
+    output::print_text(&output::table(&["field", "value"], rows))
+}
+
+fn flatten(key: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows)),
+        Value::String(text) => rows.push(vec![key.to_owned(), text.clone()]),
+        Value::Number(n) if n.is_f64() => {
+            rows.push(vec![key.to_owned(), short(n.as_f64().unwrap_or(f64::NAN))]);
+        }
+        other => rows.push(vec![key.to_owned(), other.to_string()]),
+    }
+}
+
+/// Five significant digits, for reading.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || (1e-3..1e6).contains(&magnitude) {
+        let digits =
+            if value == 0.0 { 0 } else { (4 - magnitude.log10().floor() as i32).clamp(0, 6) as usize };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.4e}")
+    }
+}

@@ -1,0 +1,120 @@
+//! What is measured of a world: stage times, counts, energy and momentum, penetration, state hash.
+
+mod overlap;
+mod state;
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::body::Bodies;
+use crate::broad::BroadCounts;
+use crate::contact::Manifolds;
+use crate::integrate::Skipped;
+use crate::lanes::Real;
+use crate::settings::{Skip, Skips};
+use crate::solve::Traits;
+
+pub use overlap::{Outline, Penetration, penetration};
+pub use state::{Invariants, first_non_finite, invariants, state_hash};
+
+/// The stages of a step, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// Candidate pairs.
+    Broad,
+    /// Manifolds.
+    Narrow,
+    /// Colours.
+    Prepare,
+    /// Prediction, correction, poses.
+    Integrate,
+    /// Contacts.
+    Solve,
+    /// Finite check.
+    Measure,
+}
+
+impl Stage {
+    /// All, in order.
+    pub const ALL: [Self; 6] =
+        [Self::Broad, Self::Narrow, Self::Prepare, Self::Integrate, Self::Solve, Self::Measure];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Broad => "broad",
+            Self::Narrow => "narrow",
+            Self::Prepare => "prepare",
+            Self::Integrate => "integrate",
+            Self::Solve => "solve",
+            Self::Measure => "measure",
+        }
+    }
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Time per stage, summed over steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StageTimes {
+    total: [Duration; Stage::ALL.len()],
+    /// Steps summed.
+    pub steps: u64,
+}
+
+impl StageTimes {
+    /// Adds the time since `clock` to a stage and sets the clock to now.
+    #[inline]
+    pub fn lap(&mut self, stage: Stage, clock: &mut Instant) {
+        let now = Instant::now();
+        self.total[stage as usize] += now - *clock;
+        *clock = now;
+    }
+
+    /// Mean time of a stage per step, ns.
+    pub fn mean_ns(&self, stage: Stage) -> f64 {
+        self.total[stage as usize].as_nanos() as f64 / self.steps.max(1) as f64
+    }
+}
+
+/// What one step counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Pairs that passed the broad phase's bounding tests.
+    pub candidates: usize,
+    /// Pairs handed to the narrow phase.
+    pub pairs: usize,
+    /// Manifolds with at least one point.
+    pub contacts: usize,
+    /// Per [`Skip`], how many bodies (motion) or contacts (contact terms) it spared work.
+    pub skipped: [u64; Skip::ALL.len()],
+}
+
+impl Counts {
+    pub(crate) fn of<R: Real>(
+        found: BroadCounts,
+        manifolds: &Manifolds<R>,
+        free_flight: bool,
+        skipped: Skipped,
+        bodies: &Bodies<R>,
+        traits: Traits,
+        skips: Skips,
+    ) -> Self {
+        let contacts = manifolds.len();
+        let needed = traits.needed(skips);
+        let spared = |term_needed: bool| if term_needed { 0 } else { contacts as u64 };
+        let mut per_skip = [0; Skip::ALL.len()];
+        per_skip[Skip::ClosedForm as usize] = skipped.closed_form;
+        per_skip[Skip::Rotation as usize] = skipped.rotation;
+        per_skip[Skip::FreeFlight as usize] = if free_flight { bodies.live() as u64 } else { 0 };
+        per_skip[Skip::Friction as usize] = spared(needed.friction);
+        per_skip[Skip::Restitution as usize] = spared(needed.restitution);
+        Self { candidates: found.candidates, pairs: found.pairs, contacts, skipped: per_skip }
+    }
+}

@@ -1,0 +1,82 @@
+//! Hash, finiteness, energy and momentum of a world's state.
+
+use xxhash_rust::xxh3::Xxh3Default;
+
+use crate::body::Bodies;
+use crate::force::Forces;
+use crate::lanes::{LaneMask, Lanes, Real};
+
+/// xxh3 (64 bits) over x, y, c, s, vx, vy, w of every living body in slot order, as `f64` bits.
+///
+/// −0 counts as 0 and every NaN as one: their bits differ between machines that agree in all values.
+pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
+    let mut hasher = Xxh3Default::new();
+    let columns = [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
+    for column in columns {
+        for slot in bodies.slots() {
+            let value = column[slot].to_f64();
+            let canonical = if value.is_nan() { f64::NAN } else { value + 0.0 };
+            let bits = if value.is_nan() { 0x7ff8_0000_0000_0000 } else { canonical.to_bits() };
+            hasher.update(&bits.to_le_bytes());
+        }
+    }
+    hasher.digest()
+}
+
+/// The first body (by column, then slot) whose state is NaN or infinite: slot, column, value.
+pub fn first_non_finite<L: Lanes>(bodies: &Bodies<L::Elem>) -> Option<(usize, &'static str, f64)> {
+    let columns = [
+        ("vx", &bodies.vx),
+        ("vy", &bodies.vy),
+        ("w", &bodies.w),
+        ("x", &bodies.x),
+        ("y", &bodies.y),
+        ("c", &bodies.c),
+        ("s", &bodies.s),
+    ];
+    let chunks = bodies.len().div_ceil(L::WIDTH);
+    let mut doubtful = L::zero();
+    for (_, column) in columns {
+        for value in &column.lanes::<L>()[..chunks] {
+            // 0 where the value is finite, NaN where it is not, and NaN stays.
+            doubtful = doubtful + *value * L::zero();
+        }
+    }
+    if !(!doubtful.equals(L::zero())).any() {
+        return None;
+    }
+    columns.into_iter().find_map(|(name, column)| {
+        let slot = bodies.slots().find(|&slot| !column[slot].is_finite())?;
+        Some((slot, name, column[slot].to_f64()))
+    })
+}
+
+/// Sums over all dynamic bodies, in `f64`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Invariants {
+    /// ½mv² + ½Iω², J.
+    pub kinetic_energy: f64,
+    /// Of gravity, springs and central fields, J.
+    pub potential_energy: f64,
+    /// Σmv, kg·m/s.
+    pub momentum: [f64; 2],
+    /// Σ(m·x×v + Iω) about the origin, kg·m²/s.
+    pub angular_momentum: f64,
+}
+
+/// Energy and momentum of a world's dynamic bodies.
+pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
+    let mut sum = Invariants::default();
+    for slot in bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO) {
+        let read = |column: &crate::column::Column<R>| column[slot].to_f64();
+        let (mass, inertia) = (1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia));
+        let (x, y, vx, vy, w) =
+            (read(&bodies.x), read(&bodies.y), read(&bodies.vx), read(&bodies.vy), read(&bodies.w));
+        sum.kinetic_energy += 0.5 * (mass * (vx * vx + vy * vy) + inertia * w * w);
+        sum.potential_energy += forces.potential_energy(mass, [x, y]);
+        sum.momentum[0] += mass * vx;
+        sum.momentum[1] += mass * vy;
+        sum.angular_momentum += mass * (x * vy - y * vx) + inertia * w;
+    }
+    sum
+}

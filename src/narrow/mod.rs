@@ -1,0 +1,251 @@
+//! Narrow phase: pairs bucketed by form, one batched kernel per pair of forms.
+//!
+//! Forms are ordered circle < box < polygon, so six buckets cover all pairs; within a pair the body of
+//! the lesser form is A. A kernel sees `WIDTH` pairs as lanes of [`Pose`]s and answers with [`Found`].
+//! The last batch of a bucket is padded with the world against itself and its answer masked away.
+//! Which pairs share a batch never changes an answer: loops that run to the batch's largest vertex
+//! count meet only repeated vertices beyond a lane's own.
+
+mod box_box;
+mod circle_box;
+mod circle_circle;
+mod circle_polygon;
+mod clip;
+mod polygon_polygon;
+
+use crate::body::{Bodies, Form, Polygons};
+use crate::column::{Column, PAD};
+use crate::contact::{Key, Manifolds};
+use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
+use crate::vec2::{Rot, Vec2};
+
+/// Entries of a pose row: what one gather brings of a body.
+const POSE_ENTRIES: &str = "x, y, c, s, extent_x, extent_y, friction, restitution";
+
+/// Where `WIDTH` bodies are and what they are like.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose<L> {
+    /// Centroid, metres.
+    pub x: Vec2<L>,
+    /// Attitude.
+    pub rot: Rot<L>,
+    /// Radius of a circle, half-extents of a box.
+    pub extent: Vec2<L>,
+    friction: L,
+    restitution: L,
+}
+
+impl<L: Lanes> Pose<L> {
+    #[inline(always)]
+    fn gather(rows: &[[L::Elem; ROW]], index: &[u32]) -> Self {
+        debug_assert_eq!(POSE_ENTRIES.split(", ").count(), ROW);
+        let [x, y, c, s, ex, ey, friction, restitution] = L::gather_rows(rows, index);
+        Self { x: Vec2::new(x, y), rot: Rot { c, s }, extent: Vec2::new(ex, ey), friction, restitution }
+    }
+}
+
+/// What a kernel answers for `WIDTH` pairs.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<L: Lanes> {
+    /// Unit normal from A to B.
+    pub normal: Vec2<L>,
+    /// Arms from A's centroid, world axes, metres; midway between the surfaces.
+    pub arms: [Vec2<L>; 2],
+    /// Metres, negative where they overlap.
+    pub separations: [L; 2],
+    /// Feature ids as whole numbers.
+    pub features: [L; 2],
+    /// Which points exist; where the second does, so does the first.
+    pub hits: [L::Mask; 2],
+}
+
+impl<L: Lanes> Found<L> {
+    /// One point: feature 0, no second point.
+    #[inline(always)]
+    fn single(normal: Vec2<L>, arm: Vec2<L>, separation: L, margin: L) -> Self {
+        let never = L::one().lt(L::zero());
+        Self {
+            normal,
+            arms: [arm, Vec2::zero()],
+            separations: [separation, L::zero()],
+            features: [L::zero(); 2],
+            hits: [separation.le(margin), never],
+        }
+    }
+}
+
+/// The six buckets, named by their forms.
+const BUCKETS: [(Form, Form); 6] = [
+    (Form::Circle, Form::Circle),
+    (Form::Circle, Form::Box),
+    (Form::Circle, Form::Polygon),
+    (Form::Box, Form::Box),
+    (Form::Box, Form::Polygon),
+    (Form::Polygon, Form::Polygon),
+];
+
+/// Forms ordered, the bucket is `a + b + (a > 0)`: 0, 1, 2, then 3, 4, then 5.
+#[inline(always)]
+fn bucket_of(a: Form, b: Form) -> usize {
+    a as usize + b as usize + usize::from(a != Form::Circle)
+}
+
+/// Pose rows, buckets and the manifolds found; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct Narrow<R: Real> {
+    poses: Column<R>,
+    buckets: [Vec<[u32; 2]>; 6],
+    /// The contacts of the last [`Narrow::run`].
+    pub manifolds: Manifolds<R>,
+}
+
+impl<R: Real> Default for Narrow<R> {
+    fn default() -> Self {
+        Self { poses: Column::new(R::ZERO), buckets: Default::default(), manifolds: Manifolds::default() }
+    }
+}
+
+impl<R: Real> Narrow<R> {
+    /// Finds the contacts of `pairs`: points closer than `margin` metres (0: only where bodies overlap).
+    ///
+    /// Reads poses and shapes; polygons' world rows must be fresh ([`Bodies::refresh_polygons`]).
+    pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
+        self.manifolds.clear();
+        self.sort_into_buckets(bodies, pairs);
+        if pairs.is_empty() {
+            return;
+        }
+        self.write_poses::<L>(bodies);
+        let polygons = Gather { polygons: &bodies.polygons, bodies };
+        let margin = L::splat(margin);
+        let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.buckets);
+        self.run_bucket::<L>(&cc, |a, b, _| circle_circle::collide(a, b, margin));
+        self.run_bucket::<L>(&cb, |a, b, _| circle_box::collide(a, b, margin));
+        self.run_bucket::<L>(&cp, |a, b, [_, ib]| circle_polygon::collide(a, b, &polygons.hull(ib), margin));
+        self.run_bucket::<L>(&bb, |a, b, _| box_box::collide(a, b, margin));
+        self.run_bucket::<L>(&bp, |a, b, [_, ib]| {
+            polygon_polygon::collide(a, b, &polygon_polygon::Hull::of_box(a), &polygons.hull(ib), margin)
+        });
+        self.run_bucket::<L>(&pp, |a, b, [ia, ib]| {
+            polygon_polygon::collide(a, b, &polygons.hull(ia), &polygons.hull(ib), margin)
+        });
+        self.buckets = [cc, cb, cp, bb, bp, pp];
+    }
+
+    /// Pairs that went into each bucket in the last run, with the bucket's forms.
+    pub fn bucket_sizes(&self) -> [(Form, Form, usize); 6] {
+        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.buckets[k].len()))
+    }
+
+    fn sort_into_buckets(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
+        for bucket in &mut self.buckets {
+            bucket.clear();
+        }
+        for &[a, b] in pairs {
+            let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
+            let (pair, forms) =
+                if form_a <= form_b { ([a, b], (form_a, form_b)) } else { ([b, a], (form_b, form_a)) };
+            self.buckets[bucket_of(forms.0, forms.1)].push(pair);
+        }
+    }
+
+    fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+        self.poses.resize(bodies.len().next_multiple_of(PAD) * ROW);
+        let columns = [
+            &bodies.x,
+            &bodies.y,
+            &bodies.c,
+            &bodies.s,
+            &bodies.extent_x,
+            &bodies.extent_y,
+            &bodies.friction,
+            &bodies.restitution,
+        ]
+        .map(Column::lanes::<L>);
+        let rows = self.poses.rows_mut();
+        for at in 0..bodies.len().div_ceil(L::WIDTH) {
+            L::store_rows(columns.map(|column| column[at]), &mut rows[at * L::WIDTH..]);
+        }
+    }
+
+    #[inline(always)]
+    fn run_bucket<L: Lanes<Elem = R>>(
+        &mut self,
+        pairs: &[[u32; 2]],
+        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2]) -> Found<L>,
+    ) {
+        for batch in pairs.chunks(L::WIDTH) {
+            let (mut ia, mut ib) = ([0; 16], [0; 16]);
+            for (lane, &[a, b]) in batch.iter().enumerate() {
+                (ia[lane], ib[lane]) = (a, b);
+            }
+            let a = Pose::gather(self.poses.rows(), &ia);
+            let b = Pose::gather(self.poses.rows(), &ib);
+            let found = collide(&a, &b, [&ia, &ib]);
+            let real_lanes = (1u32 << batch.len()) - 1;
+            let hits = found.hits.map(|mask| mask.bits() & real_lanes);
+            if hits[0] != 0 {
+                self.keep(&a, &b, &found, hits, [&ia, &ib]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn keep<L: Lanes<Elem = R>>(
+        &mut self,
+        a: &Pose<L>,
+        b: &Pose<L>,
+        found: &Found<L>,
+        hits: [u32; 2],
+        [ia, ib]: [&[u32]; 2],
+    ) {
+        let from_b = a.x - b.x;
+        let [arm0, arm1] = found.arms;
+        let [arm_b0, arm_b1] = found.arms.map(|arm| arm + from_b);
+        let (friction, restitution) = (a.friction.min(b.friction), a.restitution.min(b.restitution));
+        let [s0, s1] = found.separations;
+        let mut geometry = [[R::ZERO; ROW]; 16];
+        let mut surface = [[R::ZERO; ROW]; 16];
+        L::store_rows(
+            [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, s0, s1],
+            &mut geometry,
+        );
+        let zero = L::zero();
+        L::store_rows(
+            [arm_b0.x, arm_b0.y, arm_b1.x, arm_b1.y, friction, restitution, zero, zero],
+            &mut surface,
+        );
+        let features = found.features.map(Lanes::to_array);
+        for lane in set_lanes(hits[0]) {
+            let feature = |k: usize| features[k][lane].to_f64() as u16;
+            let key = Key {
+                a: ia[lane],
+                b: ib[lane],
+                features: [feature(0), feature(1)],
+                points: 1 + (hits[1] >> lane & 1),
+            };
+            self.manifolds.push(key, geometry[lane], surface[lane]);
+        }
+    }
+}
+
+/// Brings polygons' rows to the lanes of a batch.
+struct Gather<'a, R: Real> {
+    polygons: &'a Polygons<R>,
+    bodies: &'a Bodies<R>,
+}
+
+impl<R: Real> Gather<'_, R> {
+    /// The polygons of `WIDTH` bodies; the world, in padding lanes, has polygon 0 and is masked away.
+    #[inline(always)]
+    fn hull<L: Lanes<Elem = R>>(&self, bodies: &[u32]) -> polygon_polygon::Hull<L> {
+        let mut index = [0; 16];
+        let mut edges = 0;
+        for (slot, &body) in index[..L::WIDTH].iter_mut().zip(bodies) {
+            let at = self.bodies.shapes(body as usize).start;
+            *slot = at as u32;
+            edges = edges.max(self.polygons.count[at]);
+        }
+        polygon_polygon::Hull::gather(self.polygons, &index, edges as usize)
+    }
+}

@@ -1,0 +1,69 @@
+//! The thesis's broad-phase experiment: polygons, bounding test on and off, 60 to 200 bodies.
+
+use serde::Serialize;
+
+use super::{Contestant, SETTLE_STEPS};
+use crate::report::median;
+use crate::scene::Scene;
+use crate::scene::mixes::{Mix, mix};
+use crate::settings::{Broad, Settings};
+use crate::simulation::simulate;
+use crate::thesis::{ThesisIntegrator, Version};
+
+/// The thesis's numbers of bodies.
+pub const BODIES: [usize; 4] = [60, 80, 100, 200];
+/// Steps per window.
+const WINDOW_STEPS: usize = 20;
+
+/// One engine with one number of bodies.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// `lamina2d`, `thesis` or `tidy`.
+    pub engine: String,
+    /// Dynamic bodies.
+    pub bodies: usize,
+    /// Median with the broad phase, ms per step.
+    pub on_ms: f64,
+    /// Median with all pairs in the narrow phase, ms per step.
+    pub off_ms: f64,
+}
+
+/// Times each engine with and without its broad phase, in `windows` alternating windows.
+///
+/// # Errors
+/// A scene that cannot be run; on and off ending in different states.
+pub fn run(windows: usize) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for bodies in BODIES {
+        let scene = mix(Mix::Polygons, bodies, 1);
+        for engine in ["lamina2d", "thesis", "tidy"] {
+            let mut pair = [build(&scene, engine, true)?, build(&scene, engine, false)?];
+            let mut samples = [Vec::new(), Vec::new()];
+            for contestant in &mut pair {
+                contestant.steps(SETTLE_STEPS)?;
+            }
+            for _ in 0..windows {
+                for (contestant, samples) in pair.iter_mut().zip(&mut samples) {
+                    contestant.window(WINDOW_STEPS, samples)?;
+                }
+            }
+            let [on, off] = pair.map(|c| c.hash());
+            anyhow::ensure!(on == off, "{engine}, {bodies} polygons: the broad phase changed the result");
+            let [on_ms, off_ms] = samples.map(|s| median(&s));
+            rows.push(Row { engine: engine.to_owned(), bodies, on_ms, off_ms });
+        }
+    }
+    Ok(rows)
+}
+
+fn build(scene: &Scene, engine: &str, on: bool) -> anyhow::Result<Contestant> {
+    let version = match engine {
+        "lamina2d" => {
+            let broad = if on { Broad::Auto } else { Broad::Off };
+            return Ok(Contestant::Ours(simulate(scene, Settings { broad, ..Settings::default() })?));
+        }
+        "thesis" => Version::Faithful,
+        _ => Version::Tidy,
+    };
+    Contestant::baseline(scene, ThesisIntegrator::Euler, version, on)
+}

@@ -1,0 +1,145 @@
+//! What lanes are worth: each stage's kernel alone, on the same settled bodies, at every width.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::body::Bodies;
+use crate::broad::BroadPhase;
+use crate::integrate::{self, Plan};
+use crate::lanes::{Lanes, f32s};
+use crate::narrow::Narrow;
+use crate::report::median;
+use crate::scene::by_name;
+use crate::settings::{Broad, Integrator, Settings, Skips};
+use crate::world::World;
+
+/// One kernel at one width.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The kernel.
+    pub kernel: &'static str,
+    /// Numbers per vector.
+    pub lanes: usize,
+    /// What it ran on.
+    pub scene: &'static str,
+    /// Elements per call: pairs tested, pairs collided, bodies advanced.
+    pub elements: usize,
+    /// Median time per element, ns.
+    pub ns_per_element: f64,
+    /// Median of lanes 1 over this median.
+    pub speed_up: f64,
+}
+
+/// A kernel, its scene, the bodies of that scene, and steps to settle them.
+struct Case {
+    kernel: &'static str,
+    scene: &'static str,
+    steps: usize,
+}
+
+const CASES: [Case; 7] = [
+    Case { kernel: "broad brute", scene: "circles/1000", steps: 600 },
+    Case { kernel: "broad grid", scene: "circles/1000", steps: 600 },
+    Case { kernel: "circle-circle", scene: "circles/1000", steps: 600 },
+    Case { kernel: "box-box", scene: "stack/200", steps: 1 },
+    Case { kernel: "polygon-polygon (SAT)", scene: "polygons/1000", steps: 600 },
+    Case { kernel: "integrate", scene: "free_flight/1000", steps: 1 },
+    Case { kernel: "integrate rk4, stages", scene: "free_flight/1000", steps: 1 },
+];
+
+/// Times every kernel at widths 1, 4, 8 and 16, taking turns `repeats` times.
+///
+/// # Errors
+/// A scene that cannot be run.
+pub fn run(repeats: usize) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for case in CASES {
+        let scene = by_name(case.scene, None, 1)?;
+        let mut world = World::<f32s::X8>::from_scene(&scene, Settings::default())?;
+        for _ in 0..case.steps {
+            world.step(scene.dt_secs)?;
+        }
+        let mut kernels: Vec<Box<dyn FnMut() -> usize>> = vec![
+            kernel::<f32s::X1>(case.kernel, &world),
+            kernel::<f32s::X4>(case.kernel, &world),
+            kernel::<f32s::X8>(case.kernel, &world),
+            kernel::<f32s::X16>(case.kernel, &world),
+        ];
+        let mut samples = vec![Vec::new(); kernels.len()];
+        let mut elements = 0;
+        for _ in 0..repeats {
+            for (kernel, samples) in kernels.iter_mut().zip(&mut samples) {
+                let calls = 20;
+                let start = Instant::now();
+                for _ in 0..calls {
+                    elements = kernel();
+                }
+                samples.push(start.elapsed().as_nanos() as f64 / f64::from(calls) / elements as f64);
+            }
+        }
+        let medians: Vec<f64> = samples.iter().map(|s| median(s)).collect();
+        for (&lanes, &ns) in Settings::widths(crate::settings::Precision::F32).iter().zip(&medians) {
+            let (kernel, scene) = (case.kernel, case.scene);
+            rows.push(Row { kernel, lanes, scene, elements, ns_per_element: ns, speed_up: medians[0] / ns });
+        }
+    }
+    Ok(rows)
+}
+
+/// A closure that runs the named kernel once and says how many elements it handled.
+fn kernel<L: Lanes<Elem = f32>>(name: &str, world: &World<f32s::X8>) -> Box<dyn FnMut() -> usize> {
+    let bodies = world.bodies().clone();
+    match name {
+        "broad brute" => broad::<L>(bodies, Broad::Brute),
+        "broad grid" => broad::<L>(bodies, Broad::Grid),
+        "integrate" => advance::<L>(bodies, Integrator::SemiImplicitEuler),
+        "integrate rk4, stages" => advance::<L>(bodies, Integrator::Rk4),
+        _ => narrow::<L>(bodies, world.pairs().to_vec(), name),
+    }
+}
+
+fn broad<L: Lanes<Elem = f32>>(bodies: Bodies<f32>, method: Broad) -> Box<dyn FnMut() -> usize> {
+    let mut broad = BroadPhase::default();
+    // What one lane would test: each body against all later ones, or, with a grid, its candidates.
+    let all = bodies.live() * (bodies.live() - 1) / 2;
+    Box::new(move || {
+        let counts = broad.find::<L>(&bodies, method, 0.0);
+        if method == Broad::Brute { all } else { counts.candidates }
+    })
+}
+
+fn narrow<L: Lanes<Elem = f32>>(
+    mut bodies: Bodies<f32>,
+    mut pairs: Vec<[u32; 2]>,
+    name: &str,
+) -> Box<dyn FnMut() -> usize> {
+    bodies.refresh_polygons();
+    // Only pairs of the kernel's own forms.
+    let form = if name == "circle-circle" {
+        crate::body::Form::Circle
+    } else if name == "box-box" {
+        crate::body::Form::Box
+    } else {
+        crate::body::Form::Polygon
+    };
+    pairs.retain(|pair| pair.iter().all(|&slot| bodies.form(slot as usize) == form));
+    let mut narrow = Narrow::default();
+    Box::new(move || {
+        narrow.run::<L>(&bodies, &pairs, 0.0);
+        std::hint::black_box(narrow.manifolds.len());
+        pairs.len()
+    })
+}
+
+fn advance<L: Lanes<Elem = f32>>(
+    mut bodies: Bodies<f32>,
+    integrator: Integrator,
+) -> Box<dyn FnMut() -> usize> {
+    let fields = crate::force::Forces::gravity().fields();
+    Box::new(move || {
+        let plan = Plan { integrator, fields: &fields, h_secs: 1e-3, substeps: 1, skips: Skips::NONE };
+        integrate::fly::<L>(&plan, &mut bodies);
+        bodies.live()
+    })
+}

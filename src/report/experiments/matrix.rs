@@ -1,0 +1,193 @@
+//! The thesis's performance experiment: shape mix × integrator × bodies, at every width, beside its engine.
+
+use serde::Serialize;
+
+use super::{Contestant, SETTLE_STEPS, integrator_of, posed};
+use crate::report::Timing;
+use crate::scene::mixes::{Mix, mix};
+use crate::settings::{Integrator, Settings};
+use crate::simulation::simulate;
+use crate::thesis::{ThesisIntegrator, Version};
+
+/// One engine on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The shape mix.
+    pub mix: String,
+    /// The integrator, by our name.
+    pub integrator: String,
+    /// Dynamic bodies.
+    pub bodies: usize,
+    /// `lamina2d`, `thesis` or `tidy`.
+    pub engine: String,
+    /// Numbers per vector; 1 for the baselines.
+    pub lanes: usize,
+    /// Steps timed one by one.
+    pub ms_per_step: Timing,
+    /// Contacts in the last step.
+    pub contacts: usize,
+    /// Deepest overlap after the last step, metres.
+    pub max_penetration: f64,
+    /// Mean overlap after the last step, metres.
+    pub mean_penetration: f64,
+    /// State hash after the last step.
+    pub hash: String,
+    /// How the state that was timed came about.
+    pub start: &'static str,
+}
+
+/// Windows of steps, in which all engines take turns.
+#[derive(Clone, Copy, Debug)]
+struct Windows {
+    bodies: usize,
+    count: usize,
+    steps: usize,
+}
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    integrators: Vec<Integrator>,
+    lanes: Vec<usize>,
+    windows: Vec<Windows>,
+}
+
+impl Plan {
+    /// Everything: a few minutes.
+    pub fn full() -> Self {
+        Self {
+            integrators: Integrator::ALL.to_vec(),
+            lanes: vec![1, 4, 8, 16],
+            windows: vec![
+                Windows { bodies: 150, count: 24, steps: 60 },
+                Windows { bodies: 1000, count: 6, steps: 20 },
+                Windows { bodies: 10_000, count: 4, steps: 5 },
+            ],
+        }
+    }
+
+    /// The thesis's integrators, one lane and eight, up to 1000 bodies.
+    pub fn quick() -> Self {
+        Self {
+            integrators: vec![Integrator::SemiImplicitEuler, Integrator::VelocityVerlet, Integrator::Rk4],
+            lanes: vec![1, 8],
+            windows: vec![
+                Windows { bodies: 150, count: 12, steps: 20 },
+                Windows { bodies: 1000, count: 3, steps: 10 },
+            ],
+        }
+    }
+
+    /// How often [`run`] calls its `tick`.
+    pub fn rounds(&self) -> u64 {
+        (Mix::ALL.len() * self.windows.len()) as u64
+    }
+}
+
+/// A contestant and its samples.
+struct Entry {
+    integrator: Integrator,
+    engine: &'static str,
+    lanes: usize,
+    start: &'static str,
+    contestant: Contestant,
+    samples_ms: Vec<f64>,
+}
+
+/// Times every engine on every mix.
+///
+/// # Errors
+/// A scene that cannot be run; lane widths that disagree on the state.
+pub fn run(plan: &Plan, tick: &mut dyn FnMut()) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for windows in &plan.windows {
+        for shapes in Mix::ALL {
+            let mut entries = line_up(plan, shapes, windows)?;
+            for _ in 0..windows.count {
+                for entry in &mut entries {
+                    // The baselines' pair loop takes most of a second per step at ten thousand bodies.
+                    let slow = entry.engine != "lamina2d" && windows.bodies > 1000;
+                    let steps = if slow { 1 } else { windows.steps };
+                    entry.contestant.window(steps, &mut entry.samples_ms)?;
+                }
+            }
+            check_widths(shapes, &entries)?;
+            rows.extend(entries.iter().map(|entry| row(shapes, windows, entry)));
+            tick();
+        }
+    }
+    Ok(rows)
+}
+
+fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<Entry>> {
+    let scene = mix(shapes, windows.bodies, 1);
+    let mut settled = simulate(&scene, Settings::default())?;
+    for _ in 0..SETTLE_STEPS {
+        settled.step(super::DT_SECS)?;
+    }
+    let mut entries = Vec::new();
+    for &integrator in &plan.integrators {
+        for &lanes in &plan.lanes {
+            let world = settled.with_settings(Settings { integrator, lanes, ..Settings::default() })?;
+            entries.push(Entry {
+                integrator,
+                engine: "lamina2d",
+                lanes,
+                start: "600 steps of lamina2d",
+                contestant: Contestant::Ours(world),
+                samples_ms: Vec::new(),
+            });
+        }
+    }
+    let all = [ThesisIntegrator::Euler, ThesisIntegrator::Verlet, ThesisIntegrator::Rk4];
+    // At 1000 bodies settling all of them would take longer than all else together.
+    let baselines = if windows.bodies <= 150 { &all[..] } else { &all[..1] };
+    let own_start = windows.bodies <= 1000;
+    let from = if own_start { scene } else { posed(&scene, settled.as_ref()) };
+    for &integrator in baselines {
+        for (engine, version) in [("thesis", Version::Faithful), ("tidy", Version::Tidy)] {
+            let mut contestant = Contestant::baseline(&from, integrator, version, true)?;
+            if own_start {
+                contestant.steps(SETTLE_STEPS)?;
+            }
+            let start = if own_start { "600 steps of its own" } else { "600 steps of lamina2d" };
+            let integrator = integrator_of(integrator);
+            entries.push(Entry { integrator, engine, lanes: 1, start, contestant, samples_ms: Vec::new() });
+        }
+    }
+    Ok(entries)
+}
+
+/// The check of this benchmark: all widths of one integrator end in the same bits.
+fn check_widths(shapes: Mix, entries: &[Entry]) -> anyhow::Result<()> {
+    for pair in entries.windows(2) {
+        let same_run =
+            pair.iter().all(|e| e.engine == "lamina2d") && pair[0].integrator == pair[1].integrator;
+        if same_run && pair[0].contestant.hash() != pair[1].contestant.hash() {
+            let [a, b] = [pair[0].lanes, pair[1].lanes];
+            anyhow::bail!(
+                "{}, {}: lanes {a} and {b} ended in different states",
+                shapes.name(),
+                pair[0].integrator
+            );
+        }
+    }
+    Ok(())
+}
+
+fn row(shapes: Mix, windows: &Windows, entry: &Entry) -> Row {
+    let overlap = entry.contestant.penetration();
+    Row {
+        mix: shapes.name().to_owned(),
+        integrator: entry.integrator.name().to_owned(),
+        bodies: windows.bodies,
+        engine: entry.engine.to_owned(),
+        lanes: entry.lanes,
+        ms_per_step: Timing::of(&entry.samples_ms),
+        contacts: entry.contestant.contacts(),
+        max_penetration: overlap.max,
+        mean_penetration: overlap.mean,
+        hash: format!("{:016x}", entry.contestant.hash()),
+        start: entry.start,
+    }
+}

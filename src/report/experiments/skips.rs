@@ -1,0 +1,79 @@
+//! What each skip saves: every scene with all skips, with all but one, and with none.
+
+use serde::Serialize;
+
+use super::Contestant;
+use crate::report::median;
+use crate::scene::by_name;
+use crate::settings::{Integrator, Settings, Skip, Skips};
+use crate::simulation::simulate;
+
+/// One skip on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The scene.
+    pub scene: &'static str,
+    /// The integrator.
+    pub integrator: Integrator,
+    /// The skip that is off in the second run; `all` where none is on.
+    pub skip: &'static str,
+    /// Median with all skips, ms per step.
+    pub on_ms: f64,
+    /// Median without, ms per step.
+    pub off_ms: f64,
+    /// Share of the time without that is saved; the noise of these machines is a few percent.
+    pub saved: f64,
+    /// Same state to the bit with and without.
+    pub same_hash: bool,
+    /// Bodies or contacts it spared work in the last step.
+    pub spared: u64,
+}
+
+const SCENES: [(&str, Integrator, usize); 5] = [
+    ("free_flight/10000", Integrator::Rk4, 30),
+    ("free_flight/10000", Integrator::SemiImplicitEuler, 30),
+    ("head_on/100", Integrator::SemiImplicitEuler, 30),
+    ("stack/10", Integrator::SemiImplicitEuler, 300),
+    ("all/150", Integrator::Rk4, 600),
+];
+
+/// Times every skip on every scene in `windows` alternating windows.
+///
+/// # Errors
+/// A scene that cannot be run.
+pub fn run(windows: usize) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for (name, integrator, settle) in SCENES {
+        let scene = by_name(name, None, 1)?;
+        let single = Skip::ALL.iter().map(|&skip| (skip.name(), Some(skip), Skips::ALL.without(skip)));
+        for (label, skip, skips) in single.chain([("all", None, Skips::NONE)]) {
+            let build = |skips| simulate(&scene, Settings { integrator, skips, ..Settings::default() });
+            let mut pair = [Contestant::Ours(build(Skips::ALL)?), Contestant::Ours(build(skips)?)];
+            let mut samples = [Vec::new(), Vec::new()];
+            for contestant in &mut pair {
+                contestant.steps(settle)?;
+            }
+            for _ in 0..windows {
+                for (contestant, samples) in pair.iter_mut().zip(&mut samples) {
+                    contestant.window(10, samples)?;
+                }
+            }
+            let [on_ms, off_ms] = samples.map(|s| median(&s));
+            let counted = match &pair[0] {
+                Contestant::Ours(world) => world.counts().skipped,
+                Contestant::Baseline(_) => Default::default(),
+            };
+            rows.push(Row {
+                scene: name,
+                integrator,
+                skip: label,
+                on_ms,
+                off_ms,
+                saved: 1.0 - on_ms / off_ms,
+                same_hash: pair[0].hash() == pair[1].hash(),
+                spared: skip.map_or_else(|| counted.iter().sum(), |s| counted[s as usize]),
+            });
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,204 @@
+//! A world behind one interface, whatever its precision and lane width: what the program, the benches
+//! and the tests drive. The width is chosen here, once, and nowhere else.
+
+use crate::body::{Bodies, Form};
+use crate::broad::BroadPhase;
+use crate::contact::Contact;
+use crate::lanes::{Lanes, Real, f32s, f64s};
+use crate::measure::{self, Counts, Invariants, Outline, Penetration, StageTimes};
+use crate::scene::{BodyKind, Scene};
+use crate::settings::{Broad, Precision, Settings};
+use crate::world::{StepError, World, WorldError};
+
+/// One body's state, spelled out in `f64`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Centroid, metres.
+    pub position: [f64; 2],
+    /// cos and sin of the attitude.
+    pub rotation: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+    /// rad/s.
+    pub angular_velocity: f64,
+}
+
+/// A world of any precision and lane width.
+pub trait Simulation: Send {
+    /// Advances by `dt_secs`.
+    ///
+    /// # Errors
+    /// Those of [`World::step`].
+    fn step(&mut self, dt_secs: f64) -> Result<(), StepError>;
+    /// The settings.
+    fn settings(&self) -> &Settings;
+    /// Living bodies, static ones included.
+    fn bodies(&self) -> usize;
+    /// The states of living bodies, in slot order.
+    fn states(&self) -> Vec<BodyState>;
+    /// The contacts found at the beginning of the last step.
+    fn contacts(&self) -> Vec<Contact>;
+    /// What the last step counted.
+    fn counts(&self) -> Counts;
+    /// Time per stage since the last reset.
+    fn times(&self) -> StageTimes;
+    /// Sets stage times to zero.
+    fn reset_times(&mut self);
+    /// Hash of pose and velocity columns.
+    fn hash(&self) -> u64;
+    /// Energy and momentum.
+    fn invariants(&self) -> Invariants;
+    /// Discs and outlines of living bodies.
+    fn outlines(&self) -> Vec<Outline>;
+    /// Overlaps, by the `f64` check.
+    fn penetration(&self) -> Penetration {
+        measure::penetration(&self.outlines())
+    }
+    /// The candidate pairs of the last step.
+    fn pairs(&self) -> Vec<[u32; 2]>;
+    /// The method `auto` stands for here.
+    fn broad_in_use(&self) -> Broad;
+    /// A copy that goes its own way.
+    fn duplicate(&self) -> Box<dyn Simulation>;
+    /// A world of other settings in the same state: bodies, poses and velocities to the bit.
+    ///
+    /// # Errors
+    /// Settings that cannot be run with, or of another precision.
+    fn with_settings(&self, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>;
+}
+
+/// Builds a world for a scene with the precision and lanes that `settings` name.
+///
+/// # Errors
+/// Settings, fields or bodies that cannot be run with.
+pub fn simulate(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
+    settings.check()?;
+    match (settings.precision, settings.lanes) {
+        (Precision::F32, 1) => boxed::<f32s::X1>(scene, settings),
+        (Precision::F32, 4) => boxed::<f32s::X4>(scene, settings),
+        (Precision::F32, 8) => boxed::<f32s::X8>(scene, settings),
+        (Precision::F32, _) => boxed::<f32s::X16>(scene, settings),
+        (Precision::F64, 1) => boxed::<f64s::X1>(scene, settings),
+        (Precision::F64, _) => boxed::<f64s::X4>(scene, settings),
+    }
+}
+
+fn boxed<L: Lanes>(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>
+where
+    Bodies<L::Elem>: IntoWorld,
+{
+    Ok(Box::new(World::<L>::from_scene(scene, settings)?))
+}
+
+/// Columns of a precision, into a world of any of its widths.
+pub trait IntoWorld: Sized {
+    /// Builds the world that `settings` name around these bodies.
+    ///
+    /// # Errors
+    /// Settings that cannot be run with, or of another precision.
+    fn into_world(
+        self,
+        forces: crate::force::Forces,
+        settings: Settings,
+    ) -> Result<Box<dyn Simulation>, WorldError>;
+}
+
+impl IntoWorld for Bodies<f32> {
+    fn into_world(
+        self,
+        forces: crate::force::Forces,
+        settings: Settings,
+    ) -> Result<Box<dyn Simulation>, WorldError> {
+        Ok(match settings.lanes {
+            1 => Box::new(World::<f32s::X1>::from_bodies(self, forces, settings)?),
+            4 => Box::new(World::<f32s::X4>::from_bodies(self, forces, settings)?),
+            8 => Box::new(World::<f32s::X8>::from_bodies(self, forces, settings)?),
+            _ => Box::new(World::<f32s::X16>::from_bodies(self, forces, settings)?),
+        })
+    }
+}
+
+impl IntoWorld for Bodies<f64> {
+    fn into_world(
+        self,
+        forces: crate::force::Forces,
+        settings: Settings,
+    ) -> Result<Box<dyn Simulation>, WorldError> {
+        Ok(match settings.lanes {
+            1 => Box::new(World::<f64s::X1>::from_bodies(self, forces, settings)?),
+            _ => Box::new(World::<f64s::X4>::from_bodies(self, forces, settings)?),
+        })
+    }
+}
+
+impl<L: Lanes> Simulation for World<L>
+where
+    Bodies<L::Elem>: IntoWorld,
+{
+    fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
+        self.step(dt_secs)
+    }
+    fn settings(&self) -> &Settings {
+        self.settings()
+    }
+    fn bodies(&self) -> usize {
+        self.bodies().live()
+    }
+    fn states(&self) -> Vec<BodyState> {
+        let bodies = self.bodies();
+        let read = |slot: usize| BodyState {
+            position: [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()],
+            rotation: [bodies.c[slot].to_f64(), bodies.s[slot].to_f64()],
+            velocity: [bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64()],
+            angular_velocity: bodies.w[slot].to_f64(),
+        };
+        bodies.slots().map(read).collect()
+    }
+    fn contacts(&self) -> Vec<Contact> {
+        self.contacts()
+    }
+    fn counts(&self) -> Counts {
+        *self.counts()
+    }
+    fn times(&self) -> StageTimes {
+        *self.times()
+    }
+    fn reset_times(&mut self) {
+        self.reset_times();
+    }
+    fn hash(&self) -> u64 {
+        self.hash()
+    }
+    fn invariants(&self) -> Invariants {
+        measure::invariants(self.bodies(), self.forces())
+    }
+    fn outlines(&self) -> Vec<Outline> {
+        let bodies = self.bodies();
+        let outline = |slot: usize| {
+            let centre = [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()];
+            let disc = bodies.form(slot) == Form::Circle;
+            Outline {
+                centre,
+                radius: if disc { bodies.extent_x[slot].to_f64() } else { 0.0 },
+                vertices: bodies.outline(slot).iter().map(|v| [centre[0] + v[0], centre[1] + v[1]]).collect(),
+                fixed: bodies.kind(slot) == BodyKind::Static,
+            }
+        };
+        bodies.slots().map(outline).collect()
+    }
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        self.pairs().to_vec()
+    }
+    fn broad_in_use(&self) -> Broad {
+        BroadPhase::<L::Elem>::resolve(self.settings().broad, self.bodies().live())
+    }
+    fn duplicate(&self) -> Box<dyn Simulation> {
+        Box::new(self.clone())
+    }
+    fn with_settings(&self, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
+        if settings.precision.name() != <L::Elem as Real>::NAME {
+            return Err(WorldError::Precision { have: <L::Elem as Real>::NAME, asked: settings.precision });
+        }
+        self.bodies().clone().into_world(*self.forces(), settings)
+    }
+}

@@ -1,0 +1,278 @@
+//! A world: bodies, fields, and the step that advances them.
+
+use std::time::Instant;
+
+use crate::body::{Bodies, BodyError, BodyId};
+use crate::broad::BroadPhase;
+use crate::contact::{Contact, Manifolds};
+use crate::force::{Field, Forces};
+use crate::integrate::{self, Motion, Plan};
+use crate::lanes::{Lanes, Real};
+use crate::measure::{Counts, Stage, StageTimes, first_non_finite, state_hash};
+use crate::narrow::Narrow;
+use crate::scene::{BodySpec, Scene, SceneError};
+use crate::settings::{Precision, Settings, SettingsError, Skip};
+use crate::solve::color::Coloring;
+use crate::solve::{self, Traits};
+
+/// A step that could not be taken to its end.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// A body's state became NaN or infinite; the world holds that state.
+    #[error("step {step}: body in slot {slot} is no longer finite: {column} = {value} after {stage}")]
+    NonFinite {
+        /// The step's number, from 1.
+        step: u64,
+        /// The body.
+        slot: usize,
+        /// The column.
+        column: &'static str,
+        /// What it holds.
+        value: f64,
+        /// Where it first was so: the integrator or the solver.
+        stage: Stage,
+    },
+    /// Steps have a positive, finite length.
+    #[error("dt must be positive and finite, got {0}")]
+    Dt(f64),
+}
+
+/// Why a world could not be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// A body or field.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A setting.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// A running world keeps its precision.
+    #[error("a world of {have} cannot become one of {asked}")]
+    Precision {
+        /// What it is built on.
+        have: &'static str,
+        /// What was asked for.
+        asked: Precision,
+    },
+}
+
+/// Bodies, fields, and the memory a step works in.
+#[derive(Clone, Debug)]
+pub struct World<L: Lanes> {
+    bodies: Bodies<L::Elem>,
+    forces: Forces,
+    settings: Settings,
+    fields: Vec<Field<L::Elem>>,
+    traits: Traits,
+    inspected: Option<u64>,
+    broad: BroadPhase<L::Elem>,
+    narrow: Narrow<L::Elem>,
+    coloring: Coloring,
+    motion: Motion<L::Elem>,
+    steps: u64,
+    counts: Counts,
+    times: StageTimes,
+}
+
+impl<L: Lanes> World<L> {
+    /// An empty world.
+    ///
+    /// # Errors
+    /// Settings or fields that cannot be run with.
+    pub fn new(forces: Forces, settings: Settings) -> Result<Self, WorldError> {
+        Self::from_bodies(Bodies::new(), forces, settings)
+    }
+
+    /// A world around existing bodies.
+    ///
+    /// # Errors
+    /// Settings or fields that cannot be run with.
+    pub fn from_bodies(
+        bodies: Bodies<L::Elem>,
+        forces: Forces,
+        settings: Settings,
+    ) -> Result<Self, WorldError> {
+        settings.check()?;
+        forces.check().map_err(SceneError::from)?;
+        Ok(Self {
+            bodies,
+            forces,
+            settings,
+            fields: Vec::new(),
+            traits: Traits { friction: false, restitution: false },
+            inspected: None,
+            broad: BroadPhase::default(),
+            narrow: Narrow::default(),
+            coloring: Coloring::default(),
+            motion: Motion::default(),
+            steps: 0,
+            counts: Counts::default(),
+            times: StageTimes::default(),
+        })
+    }
+
+    /// A world with the bodies of a scene, in their order: the k-th is in slot k + 1.
+    ///
+    /// # Errors
+    /// Settings, fields or bodies that cannot be run with.
+    pub fn from_scene(scene: &Scene, settings: Settings) -> Result<Self, WorldError> {
+        let mut world = Self::new(scene.forces, settings)?;
+        for spec in &scene.bodies {
+            world.insert(spec).map_err(SceneError::from)?;
+        }
+        Ok(world)
+    }
+
+    /// Advances by `dt_secs`: the whole frame, top to bottom.
+    ///
+    /// # Errors
+    /// A step that is not positive and finite (nothing changes); a state that turned NaN or infinite
+    /// (the world keeps it, for inspection).
+    pub fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
+        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
+            return Err(StepError::Dt(dt_secs));
+        }
+        self.inspect();
+        self.steps += 1;
+        let mut clock = Instant::now();
+        let mut lap = |times: &mut StageTimes, stage| times.lap(stage, &mut clock);
+        let Settings { solver, substeps, skips, .. } = self.settings;
+        let margin = solve::margin(solver);
+
+        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin);
+        lap(&mut self.times, Stage::Broad);
+
+        self.bodies.refresh_polygons();
+        self.narrow.run::<L>(&self.bodies, self.broad.pairs(), margin);
+        lap(&mut self.times, Stage::Narrow);
+
+        let manifolds = &self.narrow.manifolds;
+        let h_secs = dt_secs / f64::from(substeps);
+        let plan =
+            Plan { integrator: self.settings.integrator, fields: &self.fields, h_secs, substeps, skips };
+        let free_flight = manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let mut skipped = integrate::Skipped::default();
+        if free_flight {
+            skipped = integrate::fly::<L>(&plan, &mut self.bodies);
+            lap(&mut self.times, Stage::Integrate);
+        } else {
+            self.coloring.run(&self.bodies, manifolds);
+            lap(&mut self.times, Stage::Prepare);
+            let needed = self.traits.needed(skips);
+            for _ in 0..substeps {
+                skipped = integrate::predict::<L>(&plan, &self.bodies, &mut self.motion);
+                lap(&mut self.times, Stage::Integrate);
+                solve::solve::<L>(solver, needed, manifolds, &self.coloring, &mut self.motion.rows);
+                lap(&mut self.times, Stage::Solve);
+                integrate::correct::<L>(h_secs, &mut self.bodies, &mut self.motion);
+                lap(&mut self.times, Stage::Integrate);
+            }
+            integrate::finish::<L>(&mut self.bodies, &mut self.motion);
+            lap(&mut self.times, Stage::Integrate);
+        }
+
+        self.counts = Counts::of(found, manifolds, free_flight, skipped, &self.bodies, self.traits, skips);
+        self.times.steps += 1;
+        self.check_finite(free_flight)?;
+        lap(&mut self.times, Stage::Measure);
+        Ok(())
+    }
+
+    /// Looks over the scene when it has changed: which fields, which contact terms it needs.
+    fn inspect(&mut self) {
+        if self.inspected == Some(self.bodies.revision()) {
+            return;
+        }
+        self.inspected = Some(self.bodies.revision());
+        self.fields = self.forces.fields();
+        if self.bodies.force.is_some() {
+            self.fields.insert(0, Field::PerBody);
+        }
+        let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
+        self.traits = Traits {
+            friction: some(self.bodies.friction.as_slice()),
+            restitution: some(self.bodies.restitution.as_slice()),
+        };
+        self.motion.resize(self.bodies.len());
+    }
+
+    fn check_finite(&self, free_flight: bool) -> Result<(), StepError> {
+        let Some((slot, column, value)) = first_non_finite::<L>(&self.bodies) else { return Ok(()) };
+        let predicted = self.motion.free_velocity(slot).iter().all(|v| v.is_finite());
+        let stage = if free_flight || !predicted { Stage::Integrate } else { Stage::Solve };
+        Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
+    }
+
+    /// Takes a body in.
+    ///
+    /// # Errors
+    /// Those of [`Bodies::insert`].
+    pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
+        self.bodies.insert(spec)
+    }
+
+    /// Takes a body out.
+    ///
+    /// # Errors
+    /// An id whose body is gone.
+    pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
+        self.bodies.remove(id)
+    }
+
+    /// Adds an impulse; see [`Bodies::apply_impulse`].
+    ///
+    /// # Errors
+    /// Those of [`Bodies::apply_impulse`].
+    pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
+        self.bodies.apply_impulse(id, linear, angular)
+    }
+
+    /// The columns.
+    pub fn bodies(&self) -> &Bodies<L::Elem> {
+        &self.bodies
+    }
+    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`].
+    pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
+        &mut self.bodies
+    }
+    /// The fields.
+    pub fn forces(&self) -> &Forces {
+        &self.forces
+    }
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+    /// The contacts the last step found at its beginning.
+    pub fn manifolds(&self) -> &Manifolds<L::Elem> {
+        &self.narrow.manifolds
+    }
+    /// Those contacts, spelled out.
+    pub fn contacts(&self) -> Vec<Contact> {
+        (0..self.manifolds().len()).map(|k| self.manifolds().contact(k)).collect()
+    }
+    /// Steps taken.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+    /// What the last step counted.
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+    /// Time per stage since the last [`World::reset_times`].
+    pub fn times(&self) -> &StageTimes {
+        &self.times
+    }
+    /// Sets the stage times to zero.
+    pub fn reset_times(&mut self) {
+        self.times = StageTimes::default();
+    }
+    /// xxh3 over pose and velocity of all living bodies; see [`state_hash`].
+    pub fn hash(&self) -> u64 {
+        state_hash(&self.bodies)
+    }
+    /// The candidate pairs of the last step: slots a < b, in order.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        self.broad.pairs()
+    }
+}
