@@ -7,9 +7,10 @@
 //! # Bytes per body
 //! Hot columns, read or written each step: position 2, attitude 2, velocity 3, inverse mass and inertia
 //! 2, extents 2, bounding radius 1, friction 1, restitution 1: 14 reals = 56 B in f32 (112 B in f64).
-//! Cold, 21 B: kind 1, shape form 1, shape start 4, generation 4, category 4, collides-with 4,
-//! flags 1, and 2 of vertex count. Only where some body needs them: constant force and torque 3 reals
-//! (12 B), a polygon's vertices and normals in both frames: 8 rows of 8 (256 B in f32).
+//! Cold, 19 B: kind 1, shape form 1, shape start 4, generation 4, category 4, collides-with 4,
+//! flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
+//! vertices and normals in both frames: 8 rows of 8 (256 B in f32), beside vertex
+//! count 1 and owner 4.
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
 //! number (4 B and a trigonometric call wherever it is used).
 
@@ -94,6 +95,16 @@ pub enum BodyError {
         slot: u32,
         /// The id's generation.
         generation: u32,
+    },
+    /// NaN, infinite, or too large for the world's precision, for a body that is in the world.
+    #[error("body in slot {slot}: {field} is not finite in this precision: {value}")]
+    NonFiniteInSlot {
+        /// Its slot: once slots are filled again, its number is not to be had from it.
+        slot: u32,
+        /// The field.
+        field: &'static str,
+        /// What was given.
+        value: f64,
     },
     /// Only dynamic bodies take impulses.
     #[error("body in slot {0} is not dynamic: an impulse cannot move it")]
@@ -307,6 +318,10 @@ impl<R: Real> Bodies<R> {
     pub fn is_alive(&self, slot: usize) -> bool {
         self.alive[slot]
     }
+    /// How many living bodies are in a range of slots, of which some may lie past the last.
+    pub fn live_in(&self, slots: Range<usize>) -> usize {
+        self.alive[slots.start..slots.end.min(self.len())].iter().filter(|&&alive| alive).count()
+    }
     /// Slots of living bodies, ascending.
     pub fn slots(&self) -> impl Iterator<Item = usize> + '_ {
         (1..self.len()).filter(|&slot| self.alive[slot])
@@ -434,7 +449,7 @@ impl<R: Real> Bodies<R> {
         }
         for value in [linear[0], linear[1], angular] {
             if !R::from_f64(value).is_finite() {
-                return Err(BodyError::NonFinite { body: slot - 1, field: "impulse", value });
+                return Err(BodyError::NonFiniteInSlot { slot: id.slot, field: "impulse", value });
             }
         }
         self.vx[slot] += R::from_f64(linear[0]) * self.inv_mass[slot];
@@ -451,7 +466,7 @@ impl<R: Real> Bodies<R> {
         let slot = self.check_alive(id)?;
         for (field, value) in [("force", force[0]), ("force", force[1]), ("torque", torque)] {
             if !R::from_f64(value).is_finite() {
-                return Err(BodyError::NonFinite { body: slot - 1, field, value });
+                return Err(BodyError::NonFiniteInSlot { slot: id.slot, field, value });
             }
         }
         self.write_force(slot, [force[0], force[1], torque]);

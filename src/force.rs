@@ -13,8 +13,8 @@ use crate::vec2::Vec2;
 /// A field whose coefficients cannot be run with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ForceError {
-    /// NaN or infinite.
-    #[error("force {field}: {value} is not finite")]
+    /// NaN, infinite, or too large for the world's precision.
+    #[error("force {field}: {value} is not finite in this precision")]
     NonFinite {
         /// The field.
         field: &'static str,
@@ -80,11 +80,19 @@ impl Forces {
         Self { gravity: Some([0.0, -9.81]), ..Self::default() }
     }
 
-    /// Refuses coefficients that cannot be run with.
+    /// Refuses coefficients that cannot be run with in any precision.
     ///
     /// # Errors
     /// Coefficients that are not finite, drags below zero, wind without drag.
     pub fn check(&self) -> Result<(), ForceError> {
+        self.check_in::<f64>()
+    }
+
+    /// Refuses coefficients that cannot be run with in the precision of `R`.
+    ///
+    /// # Errors
+    /// Those of [`Forces::check`], of coefficients rounded to `R`.
+    pub fn check_in<R: Real>(&self) -> Result<(), ForceError> {
         let pair = |p: Option<[f64; 2]>| p.into_iter().flatten();
         let values = (pair(self.gravity).map(|v| ("gravity", v)))
             .chain(pair(self.wind).map(|v| ("wind", v)))
@@ -104,7 +112,7 @@ impl Forces {
             )
             .chain(self.magnetic.map(|v| ("magnetic", v)));
         for (field, value) in values {
-            if !value.is_finite() {
+            if !R::from_f64(value).is_finite() {
                 return Err(ForceError::NonFinite { field, value });
             }
         }

@@ -8,7 +8,7 @@ use crate::contact::{Contact, Manifolds};
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan};
 use crate::lanes::{Lanes, Real};
-use crate::measure::{Counts, Stage, StageTimes, first_non_finite, state_hash};
+use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::Narrow;
 use crate::scene::{BodySpec, Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
@@ -93,7 +93,7 @@ impl<L: Lanes> World<L> {
         settings: Settings,
     ) -> Result<Self, WorldError> {
         settings.check()?;
-        forces.check().map_err(SceneError::from)?;
+        forces.check_in::<L::Elem>().map_err(SceneError::from)?;
         Ok(Self {
             bodies,
             forces,
@@ -151,7 +151,7 @@ impl<L: Lanes> World<L> {
         let plan =
             Plan { integrator: self.settings.integrator, fields: &self.fields, h_secs, substeps, skips };
         let free_flight = manifolds.is_empty() && skips.has(Skip::FreeFlight);
-        let mut skipped = integrate::Skipped::default();
+        let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         if free_flight {
             skipped = integrate::fly::<L>(&plan, &mut self.bodies);
             lap(&mut self.times, Stage::Integrate);
@@ -164,8 +164,12 @@ impl<L: Lanes> World<L> {
                 lap(&mut self.times, Stage::Integrate);
                 solve::solve::<L>(solver, needed, manifolds, &self.coloring, &mut self.motion.rows);
                 lap(&mut self.times, Stage::Solve);
-                integrate::correct::<L>(h_secs, &mut self.bodies, &mut self.motion);
+                finite = integrate::correct::<L>(h_secs, &mut self.bodies, &mut self.motion);
                 lap(&mut self.times, Stage::Integrate);
+                if !finite {
+                    // The next round's prediction would hide whether the solver began it.
+                    break;
+                }
             }
             integrate::finish::<L>(&mut self.bodies, &mut self.motion);
             lap(&mut self.times, Stage::Integrate);
@@ -173,7 +177,7 @@ impl<L: Lanes> World<L> {
 
         self.counts = Counts::of(found, manifolds, free_flight, skipped, &self.bodies, self.traits, skips);
         self.times.steps += 1;
-        self.check_finite(free_flight)?;
+        self.check_finite(finite)?;
         lap(&mut self.times, Stage::Measure);
         Ok(())
     }
@@ -196,11 +200,21 @@ impl<L: Lanes> World<L> {
         self.motion.resize(self.bodies.len());
     }
 
-    fn check_finite(&self, free_flight: bool) -> Result<(), StepError> {
+    /// `rounds_finite`: no round of integrating and solving broke off.
+    fn check_finite(&self, rounds_finite: bool) -> Result<(), StepError> {
         let Some((slot, column, value)) = first_non_finite::<L>(&self.bodies) else { return Ok(()) };
-        let predicted = self.motion.free_velocity(slot).iter().all(|v| v.is_finite());
-        let stage = if free_flight || !predicted { Stage::Integrate } else { Stage::Solve };
-        Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
+        let stopped = |slot, column, value, stage| {
+            Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
+        };
+        if rounds_finite {
+            return stopped(slot, column, value, Stage::Integrate);
+        }
+        // A contact spreads what is not finite: it began where already the prediction was not.
+        let origin = self.bodies.slots().find(|&slot| !self.motion.predicted_finite(slot));
+        match origin.and_then(|slot| Some((slot, non_finite_in(&self.bodies, slot)?))) {
+            Some((slot, (column, value))) => stopped(slot, column, value, Stage::Integrate),
+            None => stopped(slot, column, value, Stage::Solve),
+        }
     }
 
     /// Takes a body in.

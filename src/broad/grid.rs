@@ -14,6 +14,11 @@ const CELLS_PER_CIRCLE: f64 = 8.0;
 /// Levels at most: a factor of 2⁴⁰ between the smallest and the largest plain body.
 const MAX_LEVELS: usize = 40;
 
+/// The most cells a level of this many circles is laid out in.
+fn most_cells(circles: usize) -> f64 {
+    CELLS_PER_CIRCLE * circles as f64 + 16.0
+}
+
 /// One level of the grid.
 #[derive(Clone, Debug)]
 struct Level<R: Real> {
@@ -101,6 +106,8 @@ impl<R: Real> Level<R> {
         }
         self.lay_out(circles);
         self.starts.clear();
+        // Room for all it may ever get: bodies that drift apart make more cells, but no allocation.
+        self.starts.reserve(most_cells(self.members.len()) as usize + 1);
         self.starts.resize((self.columns * self.rows) as usize + 1, 0);
         self.cells.clear();
         for &member in &self.members {
@@ -139,10 +146,10 @@ impl<R: Real> Level<R> {
             return;
         }
         let (width, height) = (high[0] - low[0], high[1] - low[1]);
-        let count = self.members.len() as f64;
+        let most = most_cells(self.members.len());
         let mut size = largest * 2.02;
         // At most a few cells per circle, whatever its outliers.
-        while (width / size + 1.0) * (height / size + 1.0) > CELLS_PER_CIRCLE * count + 16.0 {
+        while (width / size + 1.0) * (height / size + 1.0) > most {
             size *= 1.5;
         }
         (self.origin, self.cell_size) = (low, size);

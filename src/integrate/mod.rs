@@ -144,9 +144,9 @@ impl<R: Real> Motion<R> {
         self.rows.resize(len.next_multiple_of(PAD) * ROW);
     }
 
-    /// The velocity the scheme predicted before contacts, in a slot: where a non-finite state began.
-    pub fn free_velocity(&self, slot: usize) -> [R; 3] {
-        [self.free[0][slot], self.free[1][slot], self.free[2][slot]]
+    /// Was what the scheme predicted for a slot, before contacts, finite: where a non-finite state began.
+    pub fn predicted_finite(&self, slot: usize) -> bool {
+        self.free.iter().chain(&self.ahead).all(|column| column[slot].is_finite())
     }
 }
 
@@ -270,7 +270,7 @@ fn fly_with<L: Lanes, S: Scheme>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L
         let alpha = angular_acceleration::<L>(bodies, at);
         let still = may_skip_rotation && alpha.is_none() && !w.iter().any(|w| (!w.equals(L::zero())).any());
         if still {
-            skipped.rotation += (BLOCK * L::WIDTH) as u64;
+            skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
         } else {
             let mut angle = [L::zero(); BLOCK];
             for _ in 0..plan.substeps {
@@ -286,7 +286,6 @@ fn fly_with<L: Lanes, S: Scheme>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L
         store_block(&mut bodies.x, &mut bodies.y, at, &std::array::from_fn(|i| x[i] + moved[i]));
         store_block(&mut bodies.vx, &mut bodies.vy, at, &v);
     }
-    skipped.rotation = skipped.rotation.min(bodies.live() as u64);
     skipped
 }
 
@@ -331,9 +330,11 @@ fn predict_with<L: Lanes, S: Scheme>(
     }
 }
 
-/// After the solver: velocities back into their columns, displacements summed.
-pub fn correct<L: Lanes>(h_secs: f64, bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>) {
+/// After the solver: velocities back into their columns, displacements summed. Are all of them finite?
+#[must_use]
+pub fn correct<L: Lanes>(h_secs: f64, bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>) -> bool {
     let h = Step::<L>::new(h_secs).h;
+    let mut doubtful = L::zero();
     let index: [u32; 16] = std::array::from_fn(|k| k as u32);
     for at in block_starts::<L>(bodies.len()).flat_map(|start| start..start + BLOCK) {
         let rows = &motion.rows.rows()[at * L::WIDTH..];
@@ -341,12 +342,16 @@ pub fn correct<L: Lanes>(h_secs: f64, bodies: &mut Bodies<L::Elem>, motion: &mut
         for (k, (solved, moved)) in [(vx, moved_x), (vy, moved_y), (w, turned)].into_iter().enumerate() {
             let change = solved - motion.free[k].lanes::<L>()[at];
             let ahead = motion.ahead[k].lanes::<L>()[at];
-            motion.moved[k].lanes_mut::<L>()[at] = moved + (ahead + h * change);
+            let moved = moved + (ahead + h * change);
+            motion.moved[k].lanes_mut::<L>()[at] = moved;
+            // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
+            doubtful = doubtful + moved * L::zero();
         }
         bodies.vx.lanes_mut::<L>()[at] = vx;
         bodies.vy.lanes_mut::<L>()[at] = vy;
         bodies.w.lanes_mut::<L>()[at] = w;
     }
+    !(!doubtful.equals(L::zero())).any()
 }
 
 /// Ends a step: what was moved is added to the poses and set back to zero.

@@ -3,6 +3,7 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::body::Bodies;
+use crate::column::Column;
 use crate::force::Forces;
 use crate::lanes::{LaneMask, Lanes, Real};
 
@@ -25,15 +26,7 @@ pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
 
 /// The first body (by column, then slot) whose state is NaN or infinite: slot, column, value.
 pub fn first_non_finite<L: Lanes>(bodies: &Bodies<L::Elem>) -> Option<(usize, &'static str, f64)> {
-    let columns = [
-        ("vx", &bodies.vx),
-        ("vy", &bodies.vy),
-        ("w", &bodies.w),
-        ("x", &bodies.x),
-        ("y", &bodies.y),
-        ("c", &bodies.c),
-        ("s", &bodies.s),
-    ];
+    let columns = state_columns(bodies);
     let chunks = bodies.len().div_ceil(L::WIDTH);
     let mut doubtful = L::zero();
     for (_, column) in columns {
@@ -49,6 +42,25 @@ pub fn first_non_finite<L: Lanes>(bodies: &Bodies<L::Elem>) -> Option<(usize, &'
         let slot = bodies.slots().find(|&slot| !column[slot].is_finite())?;
         Some((slot, name, column[slot].to_f64()))
     })
+}
+
+/// The first column of a slot that is NaN or infinite, and its value.
+pub fn non_finite_in<R: Real>(bodies: &Bodies<R>, slot: usize) -> Option<(&'static str, f64)> {
+    let (name, column) = state_columns(bodies).into_iter().find(|(_, column)| !column[slot].is_finite())?;
+    Some((name, column[slot].to_f64()))
+}
+
+/// The columns a step changes, by name, in the order in which a state that is not finite is looked for.
+fn state_columns<R: Real>(bodies: &Bodies<R>) -> [(&'static str, &Column<R>); 7] {
+    [
+        ("vx", &bodies.vx),
+        ("vy", &bodies.vy),
+        ("w", &bodies.w),
+        ("x", &bodies.x),
+        ("y", &bodies.y),
+        ("c", &bodies.c),
+        ("s", &bodies.s),
+    ]
 }
 
 /// Sums over all dynamic bodies, in `f64`.
@@ -68,7 +80,7 @@ pub struct Invariants {
 pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
     let mut sum = Invariants::default();
     for slot in bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO) {
-        let read = |column: &crate::column::Column<R>| column[slot].to_f64();
+        let read = |column: &Column<R>| column[slot].to_f64();
         let (mass, inertia) = (1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia));
         let (x, y, vx, vy, w) =
             (read(&bodies.x), read(&bodies.y), read(&bodies.vx), read(&bodies.vy), read(&bodies.w));
