@@ -7,8 +7,8 @@
 //! # Bytes per body
 //! Hot columns, read or written each step: position 2, attitude 2, velocity 3, inverse mass and inertia
 //! 2, extents 2, bounding radius 1, friction 1, restitution 1: 14 reals = 56 B in f32 (112 B in f64).
-//! Cold, 19 B: kind 1, shape form 1, shape start 4, generation 4, category 4, collides-with 4,
-//! flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
+//! Cold, 23 B: kind 1, shape form 1, shape start 4, generation 4, filter 12 (category, collides-with,
+//! dynamic), flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
 //! vertices and normals in both frames: 8 rows of 8 (256 B in f32), beside vertex
 //! count 1 and owner 4.
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
@@ -123,33 +123,21 @@ pub enum Form {
     Polygon = 2,
 }
 
-/// A polygon's rows, ready to be gathered: entry `k` belongs to vertex or edge `k`.
+/// A polygon's four rows: x and y of its vertices, x and y of the outward normals of the edges that start
+/// there. Entry `k` of a row belongs to vertex or edge `k`.
 ///
 /// Entries past the last repeat entry 0: a repeated axis or vertex changes no minimum and no maximum, so
 /// polygons of different counts may share a batch, and the edge from vertex k ends at vertex
 /// (k + 1) mod 8 for every count.
+pub type HullRows<R> = [[R; ROW]; 4];
+
+/// Vertices and normals of all polygons; one entry per polygon, so that a gather finds its rows together.
 #[derive(Clone, Debug, Default)]
 pub struct Polygons<R> {
-    /// Vertices in the body frame.
-    pub body_x: Vec<[R; ROW]>,
-    /// Vertices in the body frame.
-    pub body_y: Vec<[R; ROW]>,
-    /// Outward normal of the edge that starts at each vertex, body frame.
-    pub normal_body_x: Vec<[R; ROW]>,
-    /// Outward normals, body frame.
-    pub normal_body_y: Vec<[R; ROW]>,
-    /// Normal · vertex: the distance of each edge from the centroid.
-    pub offset: Vec<[R; ROW]>,
-    /// Vertices about the centroid, world axes; refreshed each step.
-    pub world_x: Vec<[R; ROW]>,
-    /// Vertices about the centroid, world axes.
-    pub world_y: Vec<[R; ROW]>,
-    /// Normals, world axes.
-    pub normal_world_x: Vec<[R; ROW]>,
-    /// Normals, world axes.
-    pub normal_world_y: Vec<[R; ROW]>,
-    /// Edge lengths.
-    pub length: Vec<[R; ROW]>,
+    /// In the body frame, about the centroid.
+    pub body: Vec<HullRows<R>>,
+    /// In world axes, about the centroid; refreshed each step.
+    pub world: Vec<HullRows<R>>,
     /// Vertices.
     pub count: Vec<u8>,
     /// The body that has it; 0 where it is free.
@@ -161,18 +149,8 @@ impl<R: Real> Polygons<R> {
     fn insert(&mut self, shape: &Shape, owner: u32) -> u32 {
         let at = self.free.pop().map_or(self.owner.len(), |at| at as usize);
         if at == self.owner.len() {
-            for rows in [
-                &mut self.body_x,
-                &mut self.body_y,
-                &mut self.normal_body_x,
-                &mut self.normal_body_y,
-                &mut self.world_x,
-                &mut self.world_y,
-                &mut self.normal_world_x,
-                &mut self.normal_world_y,
-            ] {
-                rows.push([R::ZERO; ROW]);
-            }
+            self.body.push([[R::ZERO; ROW]; 4]);
+            self.world.push([[R::ZERO; ROW]; 4]);
             self.count.push(0);
             self.owner.push(0);
         }
@@ -181,10 +159,8 @@ impl<R: Real> Polygons<R> {
         let row = |f: &dyn Fn(usize) -> f64| {
             std::array::from_fn(|k| R::from_f64(f(if k < outline.len() { k } else { 0 })))
         };
-        self.body_x[at] = row(&|k| outline[k].x);
-        self.body_y[at] = row(&|k| outline[k].y);
-        self.normal_body_x[at] = row(&|k| normals[k].x);
-        self.normal_body_y[at] = row(&|k| normals[k].y);
+        self.body[at] =
+            [row(&|k| outline[k].x), row(&|k| outline[k].y), row(&|k| normals[k].x), row(&|k| normals[k].y)];
         self.count[at] = outline.len() as u8;
         self.owner[at] = owner;
         at as u32
@@ -194,6 +170,19 @@ impl<R: Real> Polygons<R> {
         self.owner[at as usize] = 0;
         self.free.push(at);
     }
+
+    /// The largest number of vertices of any polygon; 0 without polygons.
+    pub fn max_count(&self) -> usize {
+        self.count.iter().copied().max().unwrap_or(0).into()
+    }
+}
+
+/// What decides whether a pair may collide, together so that a pair costs two loads. 12 B.
+#[derive(Clone, Copy, Debug, Default)]
+struct Filter {
+    category: u32,
+    collides_with: u32,
+    dynamic: bool,
 }
 
 /// All bodies of a world.
@@ -235,8 +224,7 @@ pub struct Bodies<R: Real> {
     form: Vec<Form>,
     kind: Vec<BodyKind>,
     shape_start: Vec<u32>,
-    category: Vec<u32>,
-    collides_with: Vec<u32>,
+    filter: Vec<Filter>,
     generation: Vec<u32>,
     alive: Vec<bool>,
     free: Vec<u32>,
@@ -275,8 +263,7 @@ impl<R: Real> Bodies<R> {
             form: Vec::new(),
             kind: Vec::new(),
             shape_start: Vec::new(),
-            category: Vec::new(),
-            collides_with: Vec::new(),
+            filter: Vec::new(),
             generation: Vec::new(),
             alive: Vec::new(),
             free: Vec::new(),
@@ -342,9 +329,10 @@ impl<R: Real> Bodies<R> {
     /// May the two collide: one of them dynamic, and each in a category the other collides with?
     #[inline(always)]
     pub fn may_collide(&self, a: usize, b: usize) -> bool {
-        (self.kind[a] == BodyKind::Dynamic || self.kind[b] == BodyKind::Dynamic)
-            && self.category[a] & self.collides_with[b] != 0
-            && self.category[b] & self.collides_with[a] != 0
+        let (fa, fb) = (&self.filter[a], &self.filter[b]);
+        (fa.dynamic || fb.dynamic)
+            && fa.category & fb.collides_with != 0
+            && fb.category & fa.collides_with != 0
     }
 
     /// Takes a body in.
@@ -392,8 +380,11 @@ impl<R: Real> Bodies<R> {
         }
         self.form[slot] = form;
         self.kind[slot] = spec.kind;
-        self.category[slot] = spec.category;
-        self.collides_with[slot] = spec.collides_with;
+        self.filter[slot] = Filter {
+            category: spec.category,
+            collides_with: spec.collides_with,
+            dynamic: spec.kind == BodyKind::Dynamic,
+        };
         self.alive[slot] = true;
         if form == Form::Polygon {
             self.shape_start[slot] = self.polygons.insert(&shape, slot as u32);
@@ -476,16 +467,16 @@ impl<R: Real> Bodies<R> {
 
     /// Turns the vertices and normals of all polygons into world axes.
     pub fn refresh_polygons(&mut self) {
-        let p = &mut self.polygons;
-        for k in 0..p.owner.len() {
-            let owner = p.owner[k] as usize;
-            let (c, s) = (self.c[owner], self.s[owner]);
-            // Fixed-size rows: the compiler turns each of these into whole vectors.
-            let turn = |x: &[R; ROW], y: &[R; ROW]| -> ([R; ROW], [R; ROW]) {
-                (std::array::from_fn(|i| c * x[i] - s * y[i]), std::array::from_fn(|i| s * x[i] + c * y[i]))
+        let Polygons { body, world, owner, .. } = &mut self.polygons;
+        let (cs, ss) = (self.c.padded(), self.s.padded());
+        for ((body, world), &owner) in body.iter().zip(world).zip(&*owner) {
+            let (c, s) = (cs[owner as usize], ss[owner as usize]);
+            // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
+            let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {
+                [std::array::from_fn(|k| c * x[k] - s * y[k]), std::array::from_fn(|k| s * x[k] + c * y[k])]
             };
-            (p.world_x[k], p.world_y[k]) = turn(&p.body_x[k], &p.body_y[k]);
-            (p.normal_world_x[k], p.normal_world_y[k]) = turn(&p.normal_body_x[k], &p.normal_body_y[k]);
+            let ([x, y], [nx, ny]) = (turn(&body[0], &body[1]), turn(&body[2], &body[3]));
+            *world = [x, y, nx, ny];
         }
     }
 
@@ -500,7 +491,7 @@ impl<R: Real> Bodies<R> {
             }
             Form::Polygon => {
                 let at = self.shapes(slot).start;
-                let (x, y) = (&self.polygons.body_x[at], &self.polygons.body_y[at]);
+                let [x, y, ..] = &self.polygons.body[at];
                 (0..self.polygons.count[at] as usize).map(|k| [x[k].to_f64(), y[k].to_f64()]).collect()
             }
         };
@@ -526,8 +517,8 @@ impl<R: Real> Bodies<R> {
             &self.restitution,
         ];
         let force = self.force.iter().flatten().map(Column::bytes).sum::<usize>();
-        let rows = 8 * self.polygons.owner.len() * size_of::<[R; ROW]>() + 5 * self.polygons.owner.len();
-        let cold = self.len() * (2 + 4 * 4 + 1);
+        let rows = self.polygons.owner.len() * (2 * size_of::<HullRows<R>>() + 5);
+        let cold = self.len() * (2 + 2 * 4 + size_of::<Filter>() + 1);
         columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold
     }
 
@@ -557,8 +548,7 @@ impl<R: Real> Bodies<R> {
         self.form.push(Form::Circle);
         self.kind.push(BodyKind::Static);
         self.shape_start.push(0);
-        self.category.push(0);
-        self.collides_with.push(0);
+        self.filter.push(Filter::default());
         self.generation.push(0);
         self.alive.push(false);
         slot
@@ -586,8 +576,7 @@ impl<R: Real> Bodies<R> {
         self.y[slot] = R::FAR;
         self.form[slot] = Form::Circle;
         self.kind[slot] = BodyKind::Static;
-        self.category[slot] = 0;
-        self.collides_with[slot] = 0;
+        self.filter[slot] = Filter::default();
         self.alive[slot] = false;
     }
 

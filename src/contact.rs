@@ -21,7 +21,18 @@ pub struct Key {
     /// One per point.
     pub features: [Feature; 2],
     /// 1 or 2.
-    pub points: u32,
+    pub points: u16,
+    /// The narrow phase's bucket it came from, 0 to 5.
+    pub bucket: u16,
+}
+
+impl Key {
+    /// Ascends along the list of contacts, and names a pair of slots from step to step: bucket, lower
+    /// slot, higher slot.
+    #[inline(always)]
+    fn order(&self) -> u64 {
+        u64::from(self.bucket) << 60 | u64::from(self.a.min(self.b)) << 30 | u64::from(self.a.max(self.b))
+    }
 }
 
 /// Entries of a manifold's first row.
@@ -42,6 +53,74 @@ pub mod surface {
     pub const FRICTION: usize = 4;
     /// Coefficient of restitution: the smaller of the two bodies'.
     pub const RESTITUTION: usize = 5;
+}
+
+/// Entries of a contact's row of impulses.
+pub mod impulse {
+    /// Normal impulse of point 0, N·s; point 1 follows.
+    pub const NORMAL: usize = 0;
+    /// Tangent impulse of point 0, N·s, along the normal turned a quarter counter-clockwise; point 1 follows.
+    pub const TANGENT: usize = 2;
+    /// Velocity with which point 0 is to part in this step, m/s, negated; point 1 follows.
+    pub const BOUNCE: usize = 4;
+}
+
+/// Impulses carried from step to step by contacts that persist: same pair, same features.
+#[derive(Clone, Debug)]
+pub struct Impulses<R: Real> {
+    keys: Vec<(u64, [Feature; 2])>,
+    rows: Column<R>,
+    old_keys: Vec<(u64, [Feature; 2])>,
+    old_rows: Column<R>,
+}
+
+impl<R: Real> Default for Impulses<R> {
+    fn default() -> Self {
+        let rows = || Column::new(R::ZERO);
+        Self { keys: Vec::new(), rows: rows(), old_keys: Vec::new(), old_rows: rows() }
+    }
+}
+
+impl<R: Real> Impulses<R> {
+    /// Forgets everything: bodies came or went, and slots may mean others now.
+    pub fn forget(&mut self) {
+        self.keys.clear();
+    }
+
+    /// Rows of impulses, one per contact of the last [`Impulses::carry`]; see [`impulse`].
+    pub fn rows_mut(&mut self) -> &mut [[R; ROW]] {
+        self.rows.rows_mut()
+    }
+
+    /// Takes over the impulses of contacts that persist and starts new ones at 0. Both lists ascend, so one
+    /// walk along them finds all; returns how many points were carried.
+    pub fn carry(&mut self, manifolds: &Manifolds<R>) -> usize {
+        std::mem::swap(&mut self.keys, &mut self.old_keys);
+        std::mem::swap(&mut self.rows, &mut self.old_rows);
+        self.keys.clear();
+        if self.rows.rows().len() < manifolds.len() {
+            self.rows.resize(manifolds.len() * ROW * 2);
+        }
+        let (old_rows, rows) = (self.old_rows.rows(), self.rows.rows_mut());
+        let (mut at, mut carried) = (0, 0);
+        for (row, key) in rows.iter_mut().zip(&manifolds.keys) {
+            let order = key.order();
+            self.keys.push((order, key.features));
+            *row = [R::ZERO; ROW];
+            while self.old_keys.get(at).is_some_and(|old| old.0 < order) {
+                at += 1;
+            }
+            let Some((_, features)) = self.old_keys.get(at).filter(|old| old.0 == order) else { continue };
+            for k in 0..key.points as usize {
+                if let Some(j) = features.iter().position(|f| *f == key.features[k]) {
+                    row[impulse::NORMAL + k] = old_rows[at][impulse::NORMAL + j];
+                    row[impulse::TANGENT + k] = old_rows[at][impulse::TANGENT + j];
+                    carried += 1;
+                }
+            }
+        }
+        carried
+    }
 }
 
 /// The contacts of a step, in the order of buckets and pairs.
@@ -75,15 +154,21 @@ impl<R: Real> Manifolds<R> {
         self.keys.clear();
     }
 
-    /// Appends a contact. Rows are kept at least as long as keys; they only grow.
+    /// Makes room for `more` contacts.
+    pub fn reserve(&mut self, more: usize) {
+        self.keys.reserve(more);
+        let rows = self.keys.len() + more;
+        if self.geometry.rows().len() < rows {
+            self.geometry.resize(rows * ROW * 2);
+            self.surface.resize(rows * ROW * 2);
+        }
+    }
+
+    /// Appends a contact; there must be room for it.
     #[inline(always)]
     pub fn push(&mut self, key: Key, geometry: [R; ROW], surface: [R; ROW]) {
         let at = self.keys.len();
         self.keys.push(key);
-        if self.geometry.rows().len() <= at {
-            self.geometry.resize((at + 1) * ROW * 2);
-            self.surface.resize((at + 1) * ROW * 2);
-        }
         self.geometry.rows_mut()[at] = geometry;
         self.surface.rows_mut()[at] = surface;
     }

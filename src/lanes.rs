@@ -171,6 +171,23 @@ pub trait Lanes:
     /// Gathers one row per lane and transposes: element `k` of the result holds `rows[index[lane]][k]`.
     /// `index` has at least `WIDTH` entries. Panics if an index is out of range.
     fn gather_rows(rows: &[[Self::Elem; ROW]], index: &[u32]) -> [Self; ROW];
+    /// Like [`Lanes::gather_rows`], for entries of four rows each: one check of the index for all four.
+    #[inline(always)]
+    fn gather_quads(quads: &[[[Self::Elem; ROW]; 4]], index: &[u32]) -> [[Self; ROW]; 4] {
+        let rows: &[[Self::Elem; ROW]] = quads.as_flattened();
+        let mut at = [0; 16];
+        for (at, index) in at[..Self::WIDTH].iter_mut().zip(index) {
+            *at = index * 4;
+        }
+        let next = |at: &mut [u32; 16]| {
+            let lanes = Self::gather_rows(rows, at);
+            for at in at {
+                *at += 1;
+            }
+            lanes
+        };
+        [next(&mut at), next(&mut at), next(&mut at), next(&mut at)]
+    }
     /// The inverse of [`Lanes::gather_rows`] over an array of rows: `to[lane][k] = from[k][lane]`,
     /// for the first `WIDTH` rows of `to`.
     fn store_rows(from: [Self; ROW], to: &mut [[Self::Elem; ROW]]);

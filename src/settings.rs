@@ -73,6 +73,8 @@ named_enum! {
     Solver, "solver",
     /// The thesis's method, cleaned: one pass, positional correction.
     Impulse = "impulse",
+    /// Sequential impulses with warm start: the default.
+    Pgs = "pgs",
 }
 
 named_enum! {
@@ -121,6 +123,8 @@ named_enum! {
     Friction = "friction",
     /// No body bounces: no restitution terms.
     Restitution = "restitution",
+    /// A list of candidate pairs is found with a skin and serves until a body has moved half of it.
+    PairList = "pair_list",
 }
 
 /// A set of [`Skip`]s.
@@ -221,7 +225,7 @@ impl Default for Settings {
         Self {
             dt_secs: 1.0 / 60.0,
             integrator: Integrator::SemiImplicitEuler,
-            solver: Solver::Impulse,
+            solver: Solver::Pgs,
             substeps: 1,
             broad: Broad::Auto,
             lanes: 8,

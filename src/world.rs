@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::broad::BroadPhase;
-use crate::contact::{Contact, Manifolds};
+use crate::contact::{Contact, Impulses, Manifolds};
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan};
 use crate::lanes::{Lanes, Real};
@@ -68,6 +68,7 @@ pub struct World<L: Lanes> {
     broad: BroadPhase<L::Elem>,
     narrow: Narrow<L::Elem>,
     coloring: Coloring,
+    impulses: Impulses<L::Elem>,
     motion: Motion<L::Elem>,
     steps: u64,
     counts: Counts,
@@ -104,6 +105,7 @@ impl<L: Lanes> World<L> {
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
             coloring: Coloring::default(),
+            impulses: Impulses::default(),
             motion: Motion::default(),
             steps: 0,
             counts: Counts::default(),
@@ -139,7 +141,8 @@ impl<L: Lanes> World<L> {
         let Settings { solver, substeps, skips, .. } = self.settings;
         let margin = solve::margin(solver);
 
-        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin);
+        let keep = skips.has(Skip::PairList);
+        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, keep);
         lap(&mut self.times, Stage::Broad);
 
         self.bodies.refresh_polygons();
@@ -153,16 +156,22 @@ impl<L: Lanes> World<L> {
         let free_flight = manifolds.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         if free_flight {
+            self.impulses.forget();
             skipped = integrate::fly::<L>(&plan, &mut self.bodies);
             lap(&mut self.times, Stage::Integrate);
         } else {
+            if solve::carries_impulses(solver) {
+                self.impulses.carry(manifolds);
+            }
             self.coloring.run(&self.bodies, manifolds);
+            self.coloring.cut::<L>(manifolds);
             lap(&mut self.times, Stage::Prepare);
             let needed = self.traits.needed(skips);
             for _ in 0..substeps {
                 skipped = integrate::predict::<L>(&plan, &self.bodies, &mut self.motion);
                 lap(&mut self.times, Stage::Integrate);
-                solve::solve::<L>(solver, needed, manifolds, &self.coloring, &mut self.motion.rows);
+                let (coloring, rows) = (&self.coloring, &mut self.motion.rows);
+                solve::solve::<L>(solver, needed, h_secs, manifolds, &mut self.impulses, coloring, rows);
                 lap(&mut self.times, Stage::Solve);
                 finite = integrate::correct::<L>(h_secs, &mut self.bodies, &mut self.motion);
                 lap(&mut self.times, Stage::Integrate);
@@ -198,6 +207,7 @@ impl<L: Lanes> World<L> {
             restitution: some(self.bodies.restitution.as_slice()),
         };
         self.motion.resize(self.bodies.len());
+        self.impulses.forget();
     }
 
     /// `rounds_finite`: no round of integrating and solving broke off.

@@ -29,11 +29,12 @@ struct Bound<R> {
 pub(super) struct LongBodies<R> {
     bounds: Vec<Bound<R>>,
     plain: Vec<u32>,
+    median_radius: f64,
 }
 
 impl<R> Default for LongBodies<R> {
     fn default() -> Self {
-        Self { bounds: Vec::new(), plain: Vec::new() }
+        Self { bounds: Vec::new(), plain: Vec::new(), median_radius: 0.0 }
     }
 }
 
@@ -46,6 +47,15 @@ impl<R: Real> LongBodies<R> {
         &self.plain
     }
 
+    pub(super) fn slots(&self) -> impl Iterator<Item = u32> + '_ {
+        self.bounds.iter().map(|bound| bound.slot)
+    }
+
+    /// Of movable bodies, metres; infinite where none moves.
+    pub(super) fn median_radius(&self) -> f64 {
+        self.median_radius
+    }
+
     /// Splits the living bodies into long and plain ones.
     pub(super) fn classify(&mut self, bodies: &Bodies<R>) {
         let mut radii: Vec<f64> = bodies
@@ -55,6 +65,7 @@ impl<R: Real> LongBodies<R> {
             .collect();
         radii.sort_unstable_by(f64::total_cmp);
         let median = radii.get(radii.len() / 2).copied().unwrap_or(f64::INFINITY);
+        self.median_radius = median;
         self.bounds.clear();
         self.plain.clear();
         for slot in bodies.slots() {
@@ -167,7 +178,8 @@ fn extent<R: Real>(bodies: &Bodies<R>, slot: usize) -> ([f64; 2], [f64; 2]) {
             let range = |row: &[R]| {
                 row.iter().map(|v| v.to_f64()).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)))
             };
-            let (x, y) = (range(&bodies.polygons.body_x[at]), range(&bodies.polygons.body_y[at]));
+            let [x, y, ..] = &bodies.polygons.body[at];
+            let (x, y) = (range(x), range(y));
             ([x.0, y.0], [x.1, y.1])
         }
     }

@@ -16,6 +16,7 @@
 
 mod brute;
 mod grid;
+mod keep;
 mod long;
 mod order;
 mod sweep;
@@ -89,6 +90,8 @@ pub struct BroadCounts {
     pub candidates: usize,
     /// Of these, pairs that may collide: one of them dynamic, categories and masks agreeing.
     pub pairs: usize,
+    /// The list of an earlier step served once more.
+    pub kept: bool,
 }
 
 /// Finds candidate pairs; memory is kept from step to step.
@@ -100,6 +103,8 @@ pub struct BroadPhase<R: Real> {
     order: order::PairOrder,
     sweep: sweep::Sweep<R>,
     grid: grid::Grid<R>,
+    keep: keep::Keep<R>,
+    kept: BroadCounts,
     revision: Option<u64>,
 }
 
@@ -112,6 +117,8 @@ impl<R: Real> Default for BroadPhase<R> {
             order: order::PairOrder::default(),
             sweep: sweep::Sweep::default(),
             grid: grid::Grid::default(),
+            keep: keep::Keep::default(),
+            kept: BroadCounts::default(),
             revision: None,
         }
     }
@@ -132,31 +139,65 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
-    /// Finds all pairs closer than `margin` metres by their bounds.
-    pub fn find<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, margin: R) -> BroadCounts {
-        self.pairs.clear();
-        let changed = self.revision != Some(bodies.revision());
-        if changed {
+    /// Finds all pairs closer than `margin` metres by their bounds; with `keep` a list may be found with a
+    /// skin and serve for several steps.
+    pub fn find<L: Lanes<Elem = R>>(
+        &mut self,
+        bodies: &Bodies<R>,
+        method: Broad,
+        margin: R,
+        keep: bool,
+    ) -> BroadCounts {
+        if self.revision != Some(bodies.revision()) {
             self.long.classify(bodies);
             self.revision = Some(bodies.revision());
+            self.keep.forget();
+        }
+        let method = Self::resolve(method, bodies.live());
+        let keep = keep && method != Broad::Off;
+        if keep && self.keep.holds::<L>(bodies) {
+            return BroadCounts { kept: true, ..self.kept };
+        }
+        let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
+        self.find_afresh::<L>(bodies, method, margin + skin);
+        let candidates = self.pairs.len();
+        self.keep_collidable(bodies);
+        self.keep.begin(bodies, self.long.slots(), skin);
+        self.kept = BroadCounts { candidates, pairs: self.pairs.len(), kept: false };
+        self.kept
+    }
+
+    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, margin: R) {
+        self.pairs.clear();
+        if method == Broad::Off {
+            return all_pairs(bodies, &mut self.pairs);
         }
         let half_margin = R::from_f64(0.5) * margin;
-        let method = Self::resolve(method, bodies.live());
-        if method == Broad::Off {
-            all_pairs(bodies, &mut self.pairs);
-        } else {
-            self.pack_plain(bodies, half_margin);
-            match method {
-                Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
-                Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
-                _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
-            }
-            self.long.find::<L>(bodies, half_margin, &mut self.pairs);
+        self.pack_plain(bodies, half_margin);
+        match method {
+            Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
+            Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
+            _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
         }
-        let candidates = self.pairs.len();
-        self.pairs.retain(|&[a, b]| bodies.may_collide(a as usize, b as usize));
-        self.order.sort(&mut self.pairs, bodies.len());
-        BroadCounts { candidates, pairs: self.pairs.len() }
+        let plain = self.pairs.len();
+        self.long.find::<L>(bodies, half_margin, &mut self.pairs);
+        if method == Broad::Brute {
+            self.order.merge(&mut self.pairs, plain);
+        } else {
+            self.order.sort(&mut self.pairs, bodies.len());
+        }
+    }
+
+    /// Drops the pairs that may not collide.
+    fn keep_collidable(&mut self, bodies: &Bodies<R>) {
+        let mut kept = 0;
+        for at in 0..self.pairs.len() {
+            let pair = self.pairs[at];
+            // Written always, kept when wanted: no branch to mispredict.
+            self.pairs[kept] = pair;
+            kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize));
+        }
+        self.pairs.truncate(kept);
     }
 
     /// Bytes held.

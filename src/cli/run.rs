@@ -29,7 +29,7 @@ pub(crate) struct Args {
     /// explicit_euler, semi_implicit_euler, velocity_verlet, position_verlet, rk4 or yoshida4.
     #[arg(long)]
     integrator: Option<Integrator>,
-    /// impulse.
+    /// impulse or pgs.
     #[arg(long)]
     solver: Option<Solver>,
     /// Integrate-and-solve rounds per step.

@@ -12,12 +12,18 @@ use crate::vec2::Vec2;
 
 /// A is the circle, B the polygon.
 #[inline(always)]
-pub(super) fn collide<L: Lanes>(a: &Pose<L>, b: &Pose<L>, hull: &Hull<L>, margin: L) -> Found<L> {
+pub(super) fn collide<L: Lanes>(
+    a: &Pose<L>,
+    b: &Pose<L>,
+    hull: &Hull<L>,
+    edges: usize,
+    margin: L,
+) -> Found<L> {
     let radius = a.extent.x;
     let centre = a.x - b.x;
     let mut edge = hull.edge(0);
     let mut distance = edge.normal.dot(centre - edge.start);
-    for k in 1..hull.edges {
+    for k in 1..edges {
         let next = hull.edge(k);
         let next_distance = next.normal.dot(centre - next.start);
         edge = edge.replaced(distance.lt(next_distance), &next);

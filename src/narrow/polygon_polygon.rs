@@ -6,13 +6,14 @@
 
 use super::clip::{PREFER_A, Reference, any_within, clip};
 use super::{Found, Pose};
-use crate::body::Polygons;
+use crate::body::HullRows;
 use crate::lanes::{Lanes, ROW, Real};
 use crate::vec2::Vec2;
 
 /// `WIDTH` convex polygons about their centroids, world axes.
 ///
-/// Entries from a lane's own count up to `edges` repeat its entry 0, so the edge from vertex k ends at
+/// Entries past a lane's own count repeat its entry 0: loops run to `EDGES`, at least the largest count in
+/// the world, unrolled; and the edge from vertex k ends at
 /// vertex (k + 1) mod 8 in every lane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hull<L> {
@@ -20,8 +21,6 @@ pub(super) struct Hull<L> {
     y: [L; ROW],
     normal_x: [L; ROW],
     normal_y: [L; ROW],
-    /// The largest count in the batch.
-    pub(super) edges: usize,
 }
 
 /// One edge per lane.
@@ -52,14 +51,9 @@ impl<L: Lanes> Edge<L> {
 
 impl<L: Lanes> Hull<L> {
     #[inline(always)]
-    pub(super) fn gather(polygons: &Polygons<L::Elem>, index: &[u32], edges: usize) -> Self {
-        Self {
-            x: L::gather_rows(&polygons.world_x, index),
-            y: L::gather_rows(&polygons.world_y, index),
-            normal_x: L::gather_rows(&polygons.normal_world_x, index),
-            normal_y: L::gather_rows(&polygons.normal_world_y, index),
-            edges,
-        }
+    pub(super) fn gather(polygons: &[HullRows<L::Elem>], index: &[u32]) -> Self {
+        let [x, y, normal_x, normal_y] = L::gather_quads(polygons, index);
+        Self { x, y, normal_x, normal_y }
     }
 
     /// A box as a hull of four edges: right, top, left, bottom.
@@ -76,7 +70,6 @@ impl<L: Lanes> Hull<L> {
             y: row([p.y, q.y, r.y, s.y]),
             normal_x: row([right.x, up.x, -right.x, -up.x]),
             normal_y: row([right.y, up.y, -right.y, -up.y]),
-            edges: 4,
         }
     }
 
@@ -102,9 +95,9 @@ impl<L: Lanes> Hull<L> {
 
     /// min n·v over the vertices.
     #[inline(always)]
-    fn support(&self, n: Vec2<L>) -> L {
+    fn support<const EDGES: usize>(&self, n: Vec2<L>) -> L {
         let mut least = n.dot(self.vertex(0));
-        for j in 1..self.edges {
+        for j in 1..EDGES {
             least = least.min(n.dot(self.vertex(j)));
         }
         least
@@ -112,13 +105,13 @@ impl<L: Lanes> Hull<L> {
 
     /// The edge that parts this hull furthest from `other`, whose centroid lies at `d`, and by how much.
     #[inline(always)]
-    fn parting_edge(&self, other: &Self, d: Vec2<L>) -> (Edge<L>, L) {
+    fn parting_edge<const EDGES: usize>(&self, other: &Self, d: Vec2<L>) -> (Edge<L>, L) {
         let apart = |k: usize| {
             let n = self.normal(k);
-            other.support(n) + n.dot(d - self.vertex(k))
+            other.support::<EDGES>(n) + n.dot(d - self.vertex(k))
         };
         let (mut edge, mut separation) = (self.edge(0), apart(0));
-        for k in 1..self.edges {
+        for k in 1..EDGES {
             let next = apart(k);
             let better = separation.lt(next);
             edge = edge.replaced(better, &self.edge(k));
@@ -129,9 +122,9 @@ impl<L: Lanes> Hull<L> {
 
     /// The edge that looks most against `n`.
     #[inline(always)]
-    fn facing_edge(&self, n: Vec2<L>) -> Edge<L> {
+    fn facing_edge<const EDGES: usize>(&self, n: Vec2<L>) -> Edge<L> {
         let (mut edge, mut least) = (self.edge(0), self.normal(0).dot(n));
-        for k in 1..self.edges {
+        for k in 1..EDGES {
             let next = self.normal(k).dot(n);
             edge = edge.replaced(next.lt(least), &self.edge(k));
             least = least.min(next);
@@ -142,7 +135,7 @@ impl<L: Lanes> Hull<L> {
 
 /// Two hulls.
 #[inline(always)]
-pub(super) fn collide<L: Lanes>(
+pub(super) fn collide<L: Lanes, const EDGES: usize>(
     a: &Pose<L>,
     b: &Pose<L>,
     hull_a: &Hull<L>,
@@ -150,11 +143,11 @@ pub(super) fn collide<L: Lanes>(
     margin: L,
 ) -> Found<L> {
     let d = b.x - a.x;
-    let (edge_a, sep_a) = hull_a.parting_edge(hull_b, d);
+    let (edge_a, sep_a) = hull_a.parting_edge::<EDGES>(hull_b, d);
     if !any_within(sep_a, margin) {
         return Found::nothing();
     }
-    let (edge_b, sep_b) = hull_b.parting_edge(hull_a, -d);
+    let (edge_b, sep_b) = hull_b.parting_edge::<EDGES>(hull_a, -d);
     let separation = sep_a.max(sep_b);
     if !any_within(separation, margin) {
         return Found::nothing();
@@ -166,7 +159,8 @@ pub(super) fn collide<L: Lanes>(
         ((edge_a.end - edge_a.start).dot(tangent_a), (edge_b.end - edge_b.start).dot(tangent_b));
     let flipped = (sep_a + length_a.min(length_b) * L::lit(PREFER_A)).lt(sep_b);
     let face = edge_a.replaced(flipped, &edge_b);
-    let incident = hull_b.facing_edge(face.normal).replaced(flipped, &hull_a.facing_edge(face.normal));
+    let incident =
+        hull_b.facing_edge::<EDGES>(face.normal).replaced(flipped, &hull_a.facing_edge::<EDGES>(face.normal));
     let tangent = Vec2::select(flipped, tangent_b, tangent_a);
     let reference = Reference {
         normal: face.normal,

@@ -9,13 +9,49 @@ use std::ops::Range;
 
 use crate::body::Bodies;
 use crate::contact::Manifolds;
-use crate::lanes::Real;
+use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 
 /// Colours a body can take part in: one bit each.
 pub const COLORS: usize = 64;
 /// Groups: for each colour its two-point and its one-point contacts.
 const GROUPS: usize = 2 * COLORS;
+
+/// Which contacts and bodies the lanes of a batch hold: one gather list each.
+///
+/// Padding lanes repeat contact 0's geometry between the world and itself: no mass, never scattered.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch {
+    /// Positions in the list of contacts.
+    pub contact: [u32; 16],
+    /// Slots of the bodies A.
+    pub a: [u32; 16],
+    /// Slots of the bodies B.
+    pub b: [u32; 16],
+    /// Lanes in use.
+    pub len: usize,
+    /// Points of each of these contacts: 1 or 2.
+    pub points: usize,
+}
+
+impl Batch {
+    fn new<R: Real>(manifolds: &Manifolds<R>, contacts: &[u32], points: usize) -> Self {
+        let mut batch = Self { contact: [0; 16], a: [0; 16], b: [0; 16], len: contacts.len(), points };
+        for (lane, &contact) in contacts.iter().enumerate() {
+            let key = &manifolds.keys[contact as usize];
+            (batch.contact[lane], batch.a[lane], batch.b[lane]) = (contact, key.a, key.b);
+            if group_is_mixed(points, key.points) {
+                batch.points = 1;
+            }
+        }
+        batch
+    }
+}
+
+/// An overflow batch holds one contact and takes its number of points.
+fn group_is_mixed(points: usize, of_contact: u16) -> bool {
+    points == 2 && of_contact == 1
+}
 
 /// Contacts sorted by colour; memory is kept from step to step.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +63,7 @@ pub struct Coloring {
     order: Vec<u32>,
     /// Start of each group in `order`; the last two entries enclose the overflow.
     starts: Vec<u32>,
+    batches: Vec<Batch>,
 }
 
 impl Coloring {
@@ -74,20 +111,20 @@ impl Coloring {
         self.starts[0] = 0;
     }
 
-    /// Calls `visit(contacts, points, may_batch)` for each group in order: contacts as positions in the
-    /// manifold list, the number of points they have (2 for the overflow, whose points vary), and
-    /// whether they may share a batch.
-    pub fn for_each_group(&self, mut visit: impl FnMut(&[u32], usize, bool)) {
-        for group in 0..GROUPS {
-            let range = self.range(group);
-            if !range.is_empty() {
-                visit(&self.order[range], 2 - group % 2, true);
-            }
+    /// Cuts the colours into batches of at most `WIDTH` contacts, for all passes of the step.
+    pub fn cut<L: Lanes>(&mut self, manifolds: &Manifolds<L::Elem>) {
+        self.batches.clear();
+        for group in 0..=GROUPS {
+            let (width, points) = if group < GROUPS { (L::WIDTH, 2 - group % 2) } else { (1, 2) };
+            let range = self.starts[group] as usize..self.starts[group + 1] as usize;
+            let batches = self.order[range].chunks(width);
+            self.batches.extend(batches.map(|contacts| Batch::new(manifolds, contacts, points)));
         }
-        let overflow = self.range(GROUPS);
-        if !overflow.is_empty() {
-            visit(&self.order[overflow], 2, false);
-        }
+    }
+
+    /// The batches of the last [`Coloring::cut`], colour by colour.
+    pub fn batches(&self) -> &[Batch] {
+        &self.batches
     }
 
     /// Colours in use.

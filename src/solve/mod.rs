@@ -5,10 +5,12 @@
 //! and kinematic bodies may occur in many lanes, but no mass moves them and their rows keep their values.
 
 pub mod color;
+mod constraint;
 mod impulse;
+mod pgs;
 
 use crate::column::Column;
-use crate::contact::Manifolds;
+use crate::contact::{Impulses, Manifolds};
 use crate::lanes::{Lanes, Real};
 use crate::settings::{Skip, Skips, Solver};
 
@@ -34,16 +36,27 @@ impl Traits {
     }
 }
 
-/// Runs one substep of the chosen solver over all colours.
+/// Runs one substep of `h_secs` of the chosen solver over all colours.
 pub fn solve<L: Lanes>(
     solver: Solver,
     traits: Traits,
+    h_secs: f64,
     manifolds: &Manifolds<L::Elem>,
+    impulses: &mut Impulses<L::Elem>,
     coloring: &Coloring,
     rows: &mut Column<L::Elem>,
 ) {
     match solver {
         Solver::Impulse => impulse::solve::<L>(traits, manifolds, coloring, rows),
+        Solver::Pgs => pgs::solve::<L>(traits, h_secs, manifolds, impulses, coloring, rows),
+    }
+}
+
+/// Does a solver begin with the impulses of the last step?
+pub fn carries_impulses(solver: Solver) -> bool {
+    match solver {
+        Solver::Impulse => false,
+        Solver::Pgs => true,
     }
 }
 
@@ -51,5 +64,6 @@ pub fn solve<L: Lanes>(
 pub fn margin<R: Real>(solver: Solver) -> R {
     match solver {
         Solver::Impulse => R::ZERO,
+        Solver::Pgs => R::from_f64(pgs::MARGIN_M),
     }
 }
