@@ -11,6 +11,7 @@ mod report;
 mod run;
 mod scenes;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -48,6 +49,9 @@ pub(crate) fn refuse(error: impl Into<anyhow::Error>) -> anyhow::Error {
 }
 
 /// Parses the arguments and runs the command.
+///
+/// Never inlined: its instructions must not move before the processor check.
+#[inline(never)]
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     let done = match cli.command {
@@ -62,7 +66,8 @@ pub(crate) fn main() -> ExitCode {
         // A reader that went away (`lamina scenes | head`) is not an error.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("lamina: {error:#}");
+            // Not `eprintln!`, which panics where stderr is closed.
+            let _ = writeln!(std::io::stderr(), "lamina: {error:#}");
             ExitCode::from(if error.is::<Refused>() { 2 } else { 1 })
         }
     }

@@ -2,26 +2,28 @@
 
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::ensure;
 use lamina2d::measure::Stage;
 use lamina2d::report::Timing;
 use lamina2d::scene::{self, Scene};
 use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver};
 use lamina2d::simulation::{Simulation, simulate};
+use lamina2d::world::StepError;
 use serde_json::{Map, Value, json};
 
 use super::{output, refuse};
 
 /// Arguments of `lamina run`.
 #[derive(Debug, clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// A scene's name, `name/parameter`, or the path of a .toml file.
     scene: String,
     /// Number of bodies, pairs or boxes, as the scene takes it.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<usize>)]
     bodies: Option<usize>,
     /// Steps to run [default: the scene's own].
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u64>)]
     steps: Option<u64>,
     /// Seconds per step [default: the scene's own, 1/60].
     #[arg(long)]
@@ -33,19 +35,19 @@ pub(crate) struct Args {
     #[arg(long)]
     solver: Option<Solver>,
     /// Integrate-and-solve rounds per step.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u32>)]
     substeps: Option<u32>,
     /// off, brute, sweep, grid or auto.
     #[arg(long)]
     broad: Option<Broad>,
     /// Numbers per vector: 1, 4, 8 or 16 (f32), 1 or 4 (f64).
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<usize>)]
     lanes: Option<usize>,
     /// f32 or f64.
     #[arg(long)]
     precision: Option<Precision>,
     /// Where the scene's random numbers come from.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<u64>, default_value_t = 1)]
     seed: u64,
     /// Work to leave out where a scene does not need it: all, none, or names separated by commas.
     #[arg(long)]
@@ -53,6 +55,15 @@ pub(crate) struct Args {
     /// Print JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// A number that counts: what `parse` says of a minus sign or a letter helps nobody.
+fn whole<T: TryFrom<u64>>(given: &str) -> Result<T, &'static str> {
+    given
+        .parse::<u64>()
+        .ok()
+        .and_then(|n| n.try_into().ok())
+        .ok_or("not a whole number from 0 up, or too large")
 }
 
 pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
@@ -66,15 +77,24 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     let mut samples_ms = Vec::new();
     for step in 0..steps {
         let start = Instant::now();
-        world.step(settings.dt_secs).with_context(|| format!("scene {}", scene.name))?;
+        world.step(settings.dt_secs).map_err(|error| name_body(&scene, error))?;
         samples_ms.push(start.elapsed().as_secs_f64() * 1e3);
         if step % 64 == 0 {
             bar.set_position(step);
         }
     }
     bar.finish_and_clear();
-    let result = describe(&scene, steps, world.as_ref(), &Timing::of(&samples_ms));
+    let result = describe(&scene, steps, world.as_ref(), &Timing::of(&samples_ms))?;
     if args.json { output::print_json(&result) } else { print_table(&result) }
+}
+
+/// Adds the scene, and the body by its number in the scene: the k-th is in slot k + 1.
+fn name_body(scene: &Scene, error: StepError) -> anyhow::Error {
+    let body = match error {
+        StepError::NonFinite { slot, .. } => format!(", body {}", slot - 1),
+        StepError::Dt(_) => String::new(),
+    };
+    anyhow::Error::new(error).context(format!("scene {}{body}", scene.name))
 }
 
 fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
@@ -108,13 +128,33 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
 }
 
 /// The JSON object of a run; the table shows the same fields.
-fn describe(scene: &Scene, steps: u64, world: &dyn Simulation, timing: &Timing) -> Map<String, Value> {
+fn describe(
+    scene: &Scene,
+    steps: u64,
+    world: &dyn Simulation,
+    timing: &Timing,
+) -> anyhow::Result<Map<String, Value>> {
     let (settings, counts, times) = (world.settings(), world.counts(), world.times());
     let stages: Map<_, _> =
         Stage::ALL.iter().map(|s| (s.name().to_owned(), json!(times.mean_ns(*s).round()))).collect();
     let skipped: Map<_, _> =
         Skip::ALL.iter().map(|s| (s.name().to_owned(), json!(counts.skipped[*s as usize]))).collect();
     let (overlap, sums) = (world.penetration(), world.invariants());
+    // JSON has no infinity: a finite state may still have an energy beyond all numbers.
+    for (field, value) in [
+        ("max_penetration", overlap.max),
+        ("kinetic_energy", sums.kinetic_energy),
+        ("potential_energy", sums.potential_energy),
+        ("momentum x", sums.momentum[0]),
+        ("momentum y", sums.momentum[1]),
+        ("angular_momentum", sums.angular_momentum),
+    ] {
+        ensure!(
+            value.is_finite(),
+            "scene {}: after step {steps}, {field} is not finite: {value}",
+            scene.name
+        );
+    }
     let fields = json!({
         "scene": scene.name,
         "bodies": world.bodies(),
@@ -148,7 +188,7 @@ fn describe(scene: &Scene, steps: u64, world: &dyn Simulation, timing: &Timing) 
         "hash": format!("{:016x}", world.hash()),
     });
     match fields {
-        Value::Object(map) => map,
+        Value::Object(map) => Ok(map),
         _ => unreachable!("an object literal"),
     }
 }
@@ -164,6 +204,9 @@ fn print_table(result: &Map<String, Value>) -> anyhow::Result<()> {
 fn flatten(key: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
     match value {
         Value::Object(fields) => fields.iter().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows)),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows));
+        }
         Value::String(text) => rows.push(vec![key.to_owned(), text.clone()]),
         Value::Number(n) if n.is_f64() => {
             rows.push(vec![key.to_owned(), short(n.as_f64().unwrap_or(f64::NAN))]);
