@@ -39,15 +39,15 @@ impl BodyId {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// Its shape is bad.
-    #[error("body {body}: shape: {source}")]
+    #[error("body {body}: shape: {why}")]
     Shape {
         /// Its number in order of insertion, from 0.
         body: usize,
         /// What is wrong with the shape.
-        source: ShapeError,
+        why: ShapeError,
     },
     /// NaN, infinite, or too large for the world's precision.
-    #[error("body {body}: {field} is not finite in this precision: {value}")]
+    #[error("body {body}: {field} is not finite in this precision: {value:?}")]
     NonFinite {
         /// Its number.
         body: usize,
@@ -57,7 +57,7 @@ pub enum BodyError {
         value: f64,
     },
     /// Outside the range the field has.
-    #[error("body {body}: {field} must be {range}, got {value}")]
+    #[error("body {body}: {field} must be {range}, got {value:?}")]
     OutOfRange {
         /// Its number.
         body: usize,
@@ -69,7 +69,7 @@ pub enum BodyError {
         value: f64,
     },
     /// Both were given.
-    #[error("body {body}: give mass or density, not both (mass {mass}, density {density})")]
+    #[error("body {body}: give mass or density, not both (mass {mass:?}, density {density:?})")]
     MassAndDensity {
         /// Its number.
         body: usize,
@@ -79,7 +79,7 @@ pub enum BodyError {
         density: f64,
     },
     /// A static body cannot move.
-    #[error("body {body}: a static body has no {field}, got {value}; make it kinematic")]
+    #[error("body {body}: a static body has no {field}, got {value:?}; make it kinematic")]
     StaticMoves {
         /// Its number.
         body: usize,
@@ -342,7 +342,7 @@ impl<R: Real> Bodies<R> {
     /// in this precision; a static body with a velocity. Nothing has changed then.
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
         let body = self.inserted;
-        let shape = spec.shape.build().map_err(|source| BodyError::Shape { body, source })?;
+        let shape = spec.shape.build().map_err(|why| BodyError::Shape { body, why })?;
         let matter = Checker { body }.check::<R>(spec, &shape)?;
         let slot = match self.free.pop() {
             Some(slot) => slot as usize,

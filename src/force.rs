@@ -8,13 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::integrate::BLOCK;
 use crate::lanes::{Lanes, Real};
+use crate::pair;
 use crate::vec2::Vec2;
 
 /// A field whose coefficients cannot be run with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ForceError {
     /// NaN, infinite, or too large for the world's precision.
-    #[error("force {field}: {value} is not finite in this precision")]
+    #[error("force {field}: {value:?} is not finite in this precision")]
     NonFinite {
         /// The field.
         field: &'static str,
@@ -22,7 +23,7 @@ pub enum ForceError {
         value: f64,
     },
     /// Below zero where that would feed energy in.
-    #[error("force {field}: coefficient must not be negative, got {value}")]
+    #[error("force {field}: coefficient must not be negative, got {value:?}")]
     Negative {
         /// The field.
         field: &'static str,
@@ -39,6 +40,7 @@ pub enum ForceError {
 #[serde(deny_unknown_fields)]
 pub struct Spring {
     /// Where it is at rest, metres.
+    #[serde(deserialize_with = "pair::required")]
     pub anchor: [f64; 2],
     /// N/m.
     pub stiffness: f64,
@@ -49,6 +51,7 @@ pub struct Spring {
 #[serde(deny_unknown_fields)]
 pub struct Central {
     /// Where it pulls to, metres.
+    #[serde(deserialize_with = "pair::required")]
     pub center: [f64; 2],
     /// μ = GM, m³/s²: the acceleration at distance r is μ/r².
     pub strength: f64,
@@ -59,8 +62,10 @@ pub struct Central {
 #[serde(deny_unknown_fields)]
 pub struct Forces {
     /// Uniform acceleration, m/s².
+    #[serde(default, deserialize_with = "pair::optional")]
     pub gravity: Option<[f64; 2]>,
     /// Velocity of the air, m/s: both drags act on the velocity relative to it.
+    #[serde(default, deserialize_with = "pair::optional")]
     pub wind: Option<[f64; 2]>,
     /// k in F = −k·(v − wind), kg/s.
     pub linear_drag: Option<f64>,

@@ -77,6 +77,7 @@ pub mod integrate;
 pub mod lanes;
 pub mod measure;
 pub mod narrow;
+mod pair;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod scene;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Real;
+
 /// A value that is not among the choices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("unknown {what} '{given}': one of {choices}")]
@@ -181,9 +183,14 @@ impl std::fmt::Display for Skips {
 /// A setting that cannot be run with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    /// The step must be positive and finite.
-    #[error("dt must be positive and finite, got {0}")]
-    Dt(f64),
+    /// The step must be positive and finite once rounded to the precision.
+    #[error("dt must be positive and finite in {precision}, got {given:?}")]
+    Dt {
+        /// The precision asked for.
+        precision: Precision,
+        /// What was given, seconds.
+        given: f64,
+    },
     /// At least one substep.
     #[error("substeps must be 1 to 1000, got {0}")]
     Substeps(u32),
@@ -259,8 +266,12 @@ impl Settings {
     /// # Errors
     /// A step that is not positive and finite, no substep, a lane width the precision does not have.
     pub fn check(&self) -> Result<(), SettingsError> {
-        if !(self.dt_secs > 0.0 && self.dt_secs.is_finite()) {
-            return Err(SettingsError::Dt(self.dt_secs));
+        let dt_secs = match self.precision {
+            Precision::F32 => f64::from(f32::from_f64(self.dt_secs)),
+            Precision::F64 => self.dt_secs,
+        };
+        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
+            return Err(SettingsError::Dt { precision: self.precision, given: self.dt_secs });
         }
         if !(1..=1000).contains(&self.substeps) {
             return Err(SettingsError::Substeps(self.substeps));

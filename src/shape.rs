@@ -17,10 +17,10 @@ const COLLINEAR_TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// A circle's radius must be positive and finite.
-    #[error("radius must be positive and finite, got {0}")]
+    #[error("radius must be positive and finite, got {0:?}")]
     Radius(f64),
     /// A box's half-extents must be positive and finite.
-    #[error("half-extent {axis} must be positive and finite, got {value}")]
+    #[error("half-extent {axis} must be positive and finite, got {value:?}")]
     HalfExtent {
         /// `x` or `y`.
         axis: char,
@@ -33,8 +33,8 @@ pub enum ShapeError {
     /// A polygon holds at most [`MAX_VERTICES`] vertices.
     #[error("a polygon has at most {MAX_VERTICES} vertices, got {0}: split it or drop vertices")]
     TooManyVertices(usize),
-    /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} is not finite: ({x}, {y})")]
+    /// A coordinate, or its square, is NaN or infinite.
+    #[error("vertex {vertex} is not finite or too far out: ({x:?}, {y:?})")]
     NonFinite {
         /// Its number.
         vertex: usize,
@@ -266,7 +266,7 @@ fn check_vertices(outline: &[DVec2]) -> Result<(), ShapeError> {
     if outline.len() > MAX_VERTICES {
         return Err(ShapeError::TooManyVertices(outline.len()));
     }
-    if let Some(vertex) = outline.iter().position(|v| !v.is_finite()) {
+    if let Some(vertex) = outline.iter().position(|v| !v.length_squared().is_finite()) {
         return Err(ShapeError::NonFinite { vertex, x: outline[vertex].x, y: outline[vertex].y });
     }
     let extent = outline.iter().map(|v| v.distance(outline[0])).fold(0.0, f64::max);

@@ -33,7 +33,7 @@ pub enum StepError {
         stage: Stage,
     },
     /// Steps have a positive, finite length.
-    #[error("dt must be positive and finite, got {0}")]
+    #[error("dt must be positive and finite, got {0:?}")]
     Dt(f64),
 }
 
@@ -131,7 +131,8 @@ impl<L: Lanes> World<L> {
     /// A step that is not positive and finite (nothing changes); a state that turned NaN or infinite
     /// (the world keeps it, for inspection).
     pub fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
-        if !(dt_secs > 0.0 && dt_secs.is_finite()) {
+        let rounded = L::Elem::from_f64(dt_secs);
+        if !(rounded > L::Elem::ZERO && rounded.is_finite()) {
             return Err(StepError::Dt(dt_secs));
         }
         self.inspect();

@@ -51,7 +51,7 @@ pub fn read(path: &str) -> Result<(Scene, Settings), SceneError> {
 /// Those of [`read`].
 pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
     let syntax = |why: String| SceneError::Syntax { path: path.to_owned(), why };
-    let file: File = toml::from_str(text).map_err(|e| syntax(e.to_string()))?;
+    let file: File = toml::from_str(text).map_err(|e| syntax(e.to_string().trim_end().to_owned()))?;
     file.forces.check()?;
     let setting = |why: String| SceneError::Setting { path: path.to_owned(), why };
     let (asked, default) = (file.settings, Settings::default());
@@ -68,13 +68,17 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         skips: skips.map_err(|e| setting(e.to_string()))?,
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
+    let steps = asked.steps.unwrap_or(600);
+    if steps == 0 {
+        return Err(setting("steps must be at least 1, got 0".to_owned()));
+    }
     let scene = Scene {
         name: path.to_owned(),
         about: file.about,
         bodies: file.body,
         forces: file.forces,
         dt_secs: settings.dt_secs,
-        steps: asked.steps.unwrap_or(600),
+        steps,
         seed: 0,
     };
     Ok((scene, settings))

@@ -12,6 +12,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::force::Forces;
+use crate::pair::{self, Pair};
 use crate::shape::{Shape, ShapeError};
 
 pub use named::{SCENES, SceneInfo, by_name};
@@ -31,7 +32,7 @@ pub enum BodyKind {
 
 /// A shape as it is written down; checked when it becomes a [`Shape`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", try_from = "ShapeKeys")]
 pub enum ShapeSpec {
     /// Radius, metres.
     Circle(f64),
@@ -39,6 +40,28 @@ pub enum ShapeSpec {
     Box([f64; 2]),
     /// Outline, metres, about the body's position; clockwise outlines are reversed.
     Polygon(Vec<[f64; 2]>),
+}
+
+/// A shape as a file may have it, before it is known to be exactly one.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ShapeKeys {
+    circle: Option<f64>,
+    r#box: Option<Pair>,
+    polygon: Option<Vec<Pair>>,
+}
+
+impl TryFrom<ShapeKeys> for ShapeSpec {
+    type Error = &'static str;
+    fn try_from(keys: ShapeKeys) -> Result<Self, Self::Error> {
+        match (keys.circle, keys.r#box, keys.polygon) {
+            (Some(radius), None, None) => Ok(Self::Circle(radius)),
+            (None, Some(half), None) => Ok(Self::Box(half.0)),
+            (None, None, Some(outline)) => Ok(Self::Polygon(outline.into_iter().map(|v| v.0).collect())),
+            (None, None, None) => Err("a shape needs one of circle, box or polygon"),
+            _ => Err("a shape is only one of circle, box or polygon"),
+        }
+    }
 }
 
 impl ShapeSpec {
@@ -78,12 +101,13 @@ pub struct BodySpec {
     #[serde(default)]
     pub kind: BodyKind,
     /// Where the shape's origin lies (for a polygon the origin of its outline, not its centroid).
+    #[serde(deserialize_with = "pair::required")]
     pub position: [f64; 2],
     /// Attitude, rad, counter-clockwise.
     #[serde(default)]
     pub angle: f64,
     /// Velocity of the centroid, m/s.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "pair::required")]
     pub velocity: [f64; 2],
     /// rad/s, counter-clockwise.
     #[serde(default)]
@@ -107,7 +131,7 @@ pub struct BodySpec {
     #[serde(default = "all_bits")]
     pub collides_with: u32,
     /// Constant force at the centroid, N.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "pair::required")]
     pub force: [f64; 2],
     /// Constant torque, N·m.
     #[serde(default)]

@@ -117,7 +117,7 @@ pub fn by_name(name: &str, bodies: Option<usize>, seed: u64) -> Result<Scene, Sc
         None => (name, None),
     };
     let info = SCENES.iter().find(|s| s.name == base).ok_or_else(|| SceneError::UnknownScene {
-        name: base.to_owned(),
+        name: name.to_owned(),
         choices: SCENES.iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
     })?;
     let takes = match info.takes {

@@ -35,12 +35,12 @@ pub enum ThesisError {
         feature: &'static str,
     },
     /// A shape is bad.
-    #[error("body {body}: shape: {source}")]
+    #[error("body {body}: shape: {why}")]
     Shape {
         /// Its number.
         body: usize,
         /// What is wrong with it.
-        source: ShapeError,
+        why: ShapeError,
     },
     /// A number is outside the range its field has.
     #[error("body {body}: {field} must be {range}, got {value}")]
@@ -116,7 +116,7 @@ pub(super) fn blueprints(scene: &Scene) -> Result<Vec<Blueprint>, ThesisError> {
 
 fn blueprint(body: usize, spec: &BodySpec) -> Result<Blueprint, ThesisError> {
     check(body, spec)?;
-    let shape = spec.shape.build().map_err(|source| ThesisError::Shape { body, source })?;
+    let shape = spec.shape.build().map_err(|why| ThesisError::Shape { body, why })?;
     let mass = if spec.kind == BodyKind::Static {
         0.0
     } else {
