@@ -97,7 +97,7 @@ pub enum BodyError {
         generation: u32,
     },
     /// NaN, infinite, or too large for the world's precision, for a body that is in the world.
-    #[error("body in slot {slot}: {field} is not finite in this precision: {value}")]
+    #[error("body in slot {slot}: {field} is not finite in this precision: {value:?}")]
     NonFiniteInSlot {
         /// Its slot: once slots are filled again, its number is not to be had from it.
         slot: u32,
