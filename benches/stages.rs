@@ -1,3 +1,418 @@
-//! Each stage's kernel alone.
+//! Each stage's kernels alone, on the bodies of settled scenes, at every lane width.
+//!
+//! `group/kernel/bodies/xLANES`. Time per element: bodies for `integrate` and `broad`, pairs for `narrow`,
+//! contacts for `prepare` and `solve`.
+//!
+//! | group | timed call | its answer |
+//! |---|---|---|
+//! | `integrate` | [`integrate::fly`]: one step of free flight, attitudes turned | state hash, same with the closed form |
+//! | `broad` | [`BroadPhase::find`] | the pairs, same for all methods |
+//! | `narrow` | [`Narrow::run`] on the pairs of one bucket, its pose rows included | the manifolds |
+//! | `prepare` | [`Coloring::run`], which has no lanes | every contact once, no dynamic body twice in a group |
+//! | `solve` | [`solve::solve`]: one pass over all contacts | the rows |
 
-fn main() {}
+mod common;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::measurement::WallTime;
+use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
+use lamina2d::body::{Bodies, Form};
+use lamina2d::broad::BroadPhase;
+use lamina2d::column::Column;
+use lamina2d::contact::Manifolds;
+use lamina2d::force::{Field, Forces};
+use lamina2d::integrate::{self, Motion, Plan};
+use lamina2d::lanes::{Lanes, f32s};
+use lamina2d::measure::state_hash;
+use lamina2d::narrow::Narrow;
+use lamina2d::scene::BodyKind;
+use lamina2d::settings::{Broad, Integrator, Skip, Skips, Solver};
+use lamina2d::solve::color::Coloring;
+use lamina2d::solve::{self, Traits};
+use lamina2d::world::World;
+use xxhash_rust::xxh3::Xxh3Default;
+
+use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, criterion};
+
+/// Dynamic bodies of the scenes.
+const SIZES: [usize; 2] = [150, 1000];
+/// The solver that runs, and the distance within which it wants to hear of contacts.
+const SOLVER: Solver = Solver::Impulse;
+
+type Group<'a> = BenchmarkGroup<'a, WallTime>;
+
+fn main() {
+    let mut criterion = criterion();
+    let settled = Settled::default();
+    integrate_alone(&mut criterion, &settled);
+    broad_alone(&mut criterion, &settled);
+    narrow_alone(&mut criterion, &settled);
+    prepare_alone(&mut criterion, &settled);
+    solve_alone(&mut criterion, &settled);
+    criterion.final_summary();
+}
+
+/// One stage on one input, at any width.
+trait Stage {
+    /// What a call writes.
+    type Memory;
+    /// Elements a call handles.
+    fn elements(&self) -> usize;
+    /// The memory of a first call.
+    fn memory(&self) -> Self::Memory;
+    /// The call.
+    fn run<L: Lanes<Elem = f32>>(&self, memory: &mut Self::Memory);
+    /// What the first call left in its memory.
+    fn answer(&self, memory: &Self::Memory) -> Answer;
+    /// Times calls one after the other in the same memory.
+    fn time<L: Lanes<Elem = f32>>(&self, bencher: &mut Bencher<'_>, memory: &mut Self::Memory) {
+        bencher.iter(|| self.run::<L>(black_box(&mut *memory)));
+    }
+}
+
+/// Benches a stage at 1, 4, 8 and 16 lanes.
+fn at_every_width<S: Stage>(
+    group: &mut Group<'_>,
+    kernel: &str,
+    size: usize,
+    stage: &S,
+    agreement: &Agreement,
+) {
+    at_width::<f32s::X1, S>(group, kernel, size, stage, agreement);
+    at_width::<f32s::X4, S>(group, kernel, size, stage, agreement);
+    at_width::<f32s::X8, S>(group, kernel, size, stage, agreement);
+    at_width::<f32s::X16, S>(group, kernel, size, stage, agreement);
+}
+
+fn at_width<L: Lanes<Elem = f32>, S: Stage>(
+    group: &mut Group<'_>,
+    kernel: &str,
+    size: usize,
+    stage: &S,
+    agreement: &Agreement,
+) {
+    let (function, lanes) = (format!("{kernel}/{size}"), format!("x{}", L::WIDTH));
+    let name = format!("{function}/{lanes}");
+    let mut checked = None;
+    group.throughput(Throughput::Elements(stage.elements() as u64));
+    group.bench_function(BenchmarkId::new(function, lanes), |bencher| {
+        let memory = checked.get_or_insert_with(|| {
+            let mut memory = stage.memory();
+            stage.run::<L>(&mut memory);
+            let answer = stage.answer(&memory);
+            assert!(answer.count > 0, "{name} found nothing to do");
+            agreement.check(&name, answer);
+            memory
+        });
+        stage.time::<L>(bencher, memory);
+    });
+}
+
+/// Values as bits, −0 as 0: the contract is about values.
+fn bits(rows: &[[f32; 8]]) -> impl Iterator<Item = u64> + '_ {
+    rows.iter().flatten().map(|value| u64::from((value + 0.0).to_bits()))
+}
+
+/// `count` things that consist of `values`.
+fn answer_of(count: usize, values: impl Iterator<Item = u64>) -> Answer {
+    let mut hasher = Xxh3Default::new();
+    for value in values {
+        hasher.update(&value.to_le_bytes());
+    }
+    Answer { count, hash: hasher.digest() }
+}
+
+/// One step of bodies that touch nothing.
+struct Flight {
+    bodies: Bodies<f32>,
+    fields: Vec<Field<f32>>,
+    integrator: Integrator,
+    skips: Skips,
+}
+
+impl Stage for Flight {
+    type Memory = Bodies<f32>;
+
+    fn elements(&self) -> usize {
+        self.bodies.live()
+    }
+
+    fn memory(&self) -> Bodies<f32> {
+        self.bodies.clone()
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, bodies: &mut Bodies<f32>) {
+        let Self { integrator, ref fields, skips, .. } = *self;
+        integrate::fly::<L>(&Plan { integrator, fields, h_secs: DT_SECS, substeps: 1, skips }, bodies);
+    }
+
+    fn answer(&self, bodies: &Bodies<f32>) -> Answer {
+        let moved = bodies.slots().filter(|&slot| bodies.y[slot] != self.bodies.y[slot]);
+        Answer { count: moved.count(), hash: state_hash(bodies) }
+    }
+}
+
+fn integrate_alone(criterion: &mut Criterion, settled: &Settled) {
+    let mut group = criterion.benchmark_group("integrate");
+    for size in SIZES {
+        let mut bodies = settled.get(&format!("free_flight/{size}"), 0).bodies().clone();
+        for slot in bodies.slots().collect::<Vec<_>>() {
+            bodies.w[slot] = 1.0;
+        }
+        for &integrator in Integrator::ALL {
+            // Under gravity alone the closed form is the same to the bit.
+            let agreement = Agreement::default();
+            // Nothing else is left out: attitudes are turned.
+            let fields = Forces::gravity().fields();
+            let mut stage = Flight { bodies: bodies.clone(), fields, integrator, skips: Skips::NONE };
+            at_every_width(&mut group, integrator.name(), size, &stage, &agreement);
+            stage.skips = Skips::NONE.with(Skip::ClosedForm);
+            if matches!(integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler) {
+                // They have one stage and no closed form.
+                continue;
+            }
+            at_every_width(&mut group, &format!("{integrator}_closed_form"), size, &stage, &agreement);
+        }
+    }
+    group.finish();
+}
+
+/// Candidate pairs.
+struct Pairs<'a> {
+    bodies: &'a Bodies<f32>,
+    method: Broad,
+}
+
+impl Stage for Pairs<'_> {
+    type Memory = BroadPhase<f32>;
+
+    fn elements(&self) -> usize {
+        self.bodies.live()
+    }
+
+    fn memory(&self) -> BroadPhase<f32> {
+        BroadPhase::default()
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
+        broad.find::<L>(self.bodies, self.method, solve::margin(SOLVER));
+    }
+
+    fn answer(&self, broad: &BroadPhase<f32>) -> Answer {
+        let pairs = broad.pairs();
+        answer_of(pairs.len(), pairs.iter().flatten().map(|&slot| u64::from(slot)))
+    }
+}
+
+fn broad_alone(criterion: &mut Criterion, settled: &Settled) {
+    let mut group = criterion.benchmark_group("broad");
+    for size in SIZES {
+        let world = settled.get(&format!("circles/{size}"), SETTLE_STEPS);
+        // The methods must give the same pairs in the same order.
+        let agreement = Agreement::default();
+        for method in [Broad::Brute, Broad::Sweep, Broad::Grid] {
+            let stage = Pairs { bodies: world.bodies(), method };
+            at_every_width(&mut group, method.name(), size, &stage, &agreement);
+        }
+    }
+    group.finish();
+}
+
+/// Pairs of one bucket.
+struct Bucket<'a> {
+    bodies: &'a Bodies<f32>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Stage for Bucket<'_> {
+    type Memory = Narrow<f32>;
+
+    fn elements(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn memory(&self) -> Narrow<f32> {
+        Narrow::default()
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, narrow: &mut Narrow<f32>) {
+        narrow.run::<L>(self.bodies, &self.pairs, solve::margin(SOLVER));
+    }
+
+    fn answer(&self, narrow: &Narrow<f32>) -> Answer {
+        let Manifolds { keys, geometry, surface } = &narrow.manifolds;
+        let count = keys.len();
+        let names = keys.iter().flat_map(|key| {
+            let [first, second] = key.features.map(u64::from);
+            [u64::from(key.a), u64::from(key.b), first, second, u64::from(key.points)]
+        });
+        let rows = bits(&geometry.rows()[..count]).chain(bits(&surface.rows()[..count]));
+        answer_of(count, names.chain(rows))
+    }
+}
+
+/// A bucket and a mix whose piles fill it.
+const BUCKETS: [(&str, [Form; 2], &str); 6] = [
+    ("circle-circle", [Form::Circle, Form::Circle], "circles"),
+    ("circle-box", [Form::Circle, Form::Box], "all"),
+    ("circle-polygon", [Form::Circle, Form::Polygon], "circles_polygons"),
+    ("box-box", [Form::Box, Form::Box], "all"),
+    ("box-polygon", [Form::Box, Form::Polygon], "all"),
+    ("polygon-polygon", [Form::Polygon, Form::Polygon], "polygons"),
+];
+
+fn narrow_alone(criterion: &mut Criterion, settled: &Settled) {
+    let mut group = criterion.benchmark_group("narrow");
+    for (kernel, forms, mix) in BUCKETS {
+        for size in SIZES {
+            let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
+            let stage = Bucket { pairs: pile.pairs_of(forms), bodies: &pile.bodies };
+            at_every_width(&mut group, kernel, size, &stage, &Agreement::default());
+        }
+    }
+    group.finish();
+}
+
+/// Settled bodies with the pairs and contacts of their next step.
+struct Pile {
+    bodies: Bodies<f32>,
+    pairs: Vec<[u32; 2]>,
+    manifolds: Manifolds<f32>,
+}
+
+impl Pile {
+    fn of(world: &World<f32s::X8>) -> Self {
+        let mut bodies = world.bodies().clone();
+        bodies.refresh_polygons();
+        let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
+        broad.find::<f32s::X8>(&bodies, Broad::Auto, solve::margin(SOLVER));
+        narrow.run::<f32s::X8>(&bodies, broad.pairs(), solve::margin(SOLVER));
+        Self { pairs: broad.pairs().to_vec(), bodies, manifolds: narrow.manifolds }
+    }
+
+    /// The pairs of these forms, whichever of the two comes first.
+    fn pairs_of(&self, [a, b]: [Form; 2]) -> Vec<[u32; 2]> {
+        let is_of = |pair: &[u32; 2]| {
+            let forms = pair.map(|slot| self.bodies.form(slot as usize));
+            forms == [a, b] || forms == [b, a]
+        };
+        self.pairs.iter().copied().filter(is_of).collect()
+    }
+
+    fn coloring(&self) -> Coloring {
+        let mut coloring = Coloring::default();
+        coloring.run(&self.bodies, &self.manifolds);
+        coloring
+    }
+
+    /// The rows a solver finds after the prediction of a step under gravity.
+    fn rows(&self) -> Column<f32> {
+        let fields = Forces::gravity().fields();
+        let plan = Plan {
+            integrator: Integrator::SemiImplicitEuler,
+            fields: &fields,
+            h_secs: DT_SECS,
+            substeps: 1,
+            skips: Skips::NONE,
+        };
+        let mut motion = Motion::default();
+        motion.resize(self.bodies.len());
+        integrate::predict::<f32s::X8>(&plan, &self.bodies, &mut motion);
+        motion.rows
+    }
+}
+
+fn prepare_alone(criterion: &mut Criterion, settled: &Settled) {
+    let mut group = criterion.benchmark_group("prepare");
+    for mix in ["circles", "polygons"] {
+        for size in SIZES {
+            let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
+            check_colors(&pile);
+            let mut coloring = Coloring::default();
+            group.throughput(Throughput::Elements(pile.manifolds.len() as u64));
+            group.bench_function(BenchmarkId::new(mix, size), |bencher| {
+                bencher.iter(|| black_box(&mut coloring).run(&pile.bodies, &pile.manifolds));
+            });
+        }
+    }
+    group.finish();
+}
+
+/// Every contact is in one group, and the groups that may share batches share no dynamic body.
+fn check_colors(pile: &Pile) {
+    let mut contacts_seen = vec![false; pile.manifolds.len()];
+    pile.coloring().for_each_group(|contacts, _, may_batch| {
+        let mut bodies_seen = vec![false; pile.bodies.len()];
+        for &contact in contacts {
+            let again = std::mem::replace(&mut contacts_seen[contact as usize], true);
+            assert!(!again, "contact {contact} has two colours");
+            let key = &pile.manifolds.keys[contact as usize];
+            for slot in [key.a, key.b].map(|slot| slot as usize) {
+                let again = std::mem::replace(&mut bodies_seen[slot], true);
+                let moves = pile.bodies.kind(slot) == BodyKind::Dynamic;
+                assert!(!(again && moves && may_batch), "body {slot} twice in a colour");
+            }
+        }
+    });
+    assert!(!contacts_seen.is_empty(), "nothing touches");
+    assert!(contacts_seen.iter().all(|&seen| seen), "a contact without a colour");
+}
+
+/// One pass over the contacts of a pile.
+struct Pass<'a> {
+    manifolds: &'a Manifolds<f32>,
+    coloring: Coloring,
+    rows: Column<f32>,
+}
+
+impl Stage for Pass<'_> {
+    type Memory = Column<f32>;
+
+    fn elements(&self) -> usize {
+        self.manifolds.len()
+    }
+
+    fn memory(&self) -> Column<f32> {
+        self.rows.clone()
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, rows: &mut Column<f32>) {
+        let traits = Traits { friction: true, restitution: true };
+        solve::solve::<L>(SOLVER, traits, self.manifolds, &self.coloring, rows);
+    }
+
+    fn answer(&self, rows: &Column<f32>) -> Answer {
+        let changed = rows.rows().iter().zip(self.rows.rows()).filter(|(after, before)| after != before);
+        answer_of(changed.count(), bits(rows.rows()))
+    }
+
+    /// A second pass would find the contacts solved: each gets the rows as they were, copied into the same
+    /// memory so that they stay in cache, while the clock stands.
+    fn time<L: Lanes<Elem = f32>>(&self, bencher: &mut Bencher<'_>, rows: &mut Column<f32>) {
+        bencher.iter_custom(|passes| {
+            let mut elapsed = Duration::ZERO;
+            for _ in 0..passes {
+                rows.padded_mut().copy_from_slice(self.rows.padded());
+                let start = Instant::now();
+                self.run::<L>(black_box(&mut *rows));
+                elapsed += start.elapsed();
+            }
+            elapsed
+        });
+    }
+}
+
+fn solve_alone(criterion: &mut Criterion, settled: &Settled) {
+    let mut group = criterion.benchmark_group("solve");
+    // Contacts of one point, and mostly of two.
+    for mix in ["circles", "polygons"] {
+        for size in SIZES {
+            let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
+            let stage = Pass { manifolds: &pile.manifolds, coloring: pile.coloring(), rows: pile.rows() };
+            at_every_width(&mut group, mix, size, &stage, &Agreement::default());
+        }
+    }
+    group.finish();
+}

@@ -105,7 +105,7 @@ fn integrator_of(integrator: ThesisIntegrator) -> Integrator {
 }
 
 /// The scene with its bodies where a simulation of it has them now.
-fn posed(scene: &Scene, world: &dyn Simulation) -> Scene {
+pub fn posed(scene: &Scene, world: &dyn Simulation) -> Scene {
     let mut scene = scene.clone();
     for (spec, state) in scene.bodies.iter_mut().zip(world.states()) {
         let [c, s] = state.rotation;
