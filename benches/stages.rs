@@ -21,7 +21,7 @@ use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 use lamina2d::body::{Bodies, Form};
 use lamina2d::broad::BroadPhase;
 use lamina2d::column::Column;
-use lamina2d::contact::Manifolds;
+use lamina2d::contact::{Impulses, Manifolds};
 use lamina2d::force::{Field, Forces};
 use lamina2d::integrate::{self, Motion, Plan};
 use lamina2d::lanes::{Lanes, f32s};
@@ -39,7 +39,7 @@ use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, criterion};
 /// Dynamic bodies of the scenes.
 const SIZES: [usize; 2] = [150, 1000];
 /// The solver that runs, and the distance within which it wants to hear of contacts.
-const SOLVER: Solver = Solver::Impulse;
+const SOLVER: Solver = Solver::Pgs;
 
 type Group<'a> = BenchmarkGroup<'a, WallTime>;
 
@@ -197,7 +197,7 @@ impl Stage for Pairs<'_> {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
-        broad.find::<L>(self.bodies, self.method, solve::margin(SOLVER));
+        broad.find::<L>(self.bodies, self.method, solve::margin(SOLVER), false);
     }
 
     fn answer(&self, broad: &BroadPhase<f32>) -> Answer {
@@ -287,7 +287,7 @@ impl Pile {
         let mut bodies = world.bodies().clone();
         bodies.refresh_polygons();
         let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
-        broad.find::<f32s::X8>(&bodies, Broad::Auto, solve::margin(SOLVER));
+        broad.find::<f32s::X8>(&bodies, Broad::Auto, solve::margin(SOLVER), false);
         narrow.run::<f32s::X8>(&bodies, broad.pairs(), solve::margin(SOLVER));
         Self { pairs: broad.pairs().to_vec(), bodies, manifolds: narrow.manifolds }
     }
@@ -340,63 +340,82 @@ fn prepare_alone(criterion: &mut Criterion, settled: &Settled) {
     group.finish();
 }
 
-/// Every contact is in one group, and the groups that may share batches share no dynamic body.
+/// Every contact is in one batch, and no batch holds a dynamic body twice.
 fn check_colors(pile: &Pile) {
+    let mut coloring = pile.coloring();
+    coloring.cut::<f32s::X16>(&pile.manifolds);
     let mut contacts_seen = vec![false; pile.manifolds.len()];
-    pile.coloring().for_each_group(|contacts, _, may_batch| {
+    for batch in coloring.batches() {
         let mut bodies_seen = vec![false; pile.bodies.len()];
-        for &contact in contacts {
-            let again = std::mem::replace(&mut contacts_seen[contact as usize], true);
+        for lane in 0..batch.len {
+            let contact = batch.contact[lane] as usize;
+            let again = std::mem::replace(&mut contacts_seen[contact], true);
             assert!(!again, "contact {contact} has two colours");
-            let key = &pile.manifolds.keys[contact as usize];
-            for slot in [key.a, key.b].map(|slot| slot as usize) {
+            for slot in [batch.a[lane], batch.b[lane]].map(|slot| slot as usize) {
                 let again = std::mem::replace(&mut bodies_seen[slot], true);
                 let moves = pile.bodies.kind(slot) == BodyKind::Dynamic;
-                assert!(!(again && moves && may_batch), "body {slot} twice in a colour");
+                assert!(!(again && moves), "body {slot} twice in a batch");
             }
         }
-    });
+    }
     assert!(!contacts_seen.is_empty(), "nothing touches");
     assert!(contacts_seen.iter().all(|&seen| seen), "a contact without a colour");
 }
 
-/// One pass over the contacts of a pile.
+/// One substep's solve over the contacts of a pile.
 struct Pass<'a> {
+    solver: Solver,
     manifolds: &'a Manifolds<f32>,
     coloring: Coloring,
     rows: Column<f32>,
 }
 
+/// What a solver works in: rows, impulses that start at 0, and batches cut for the width in use.
+struct PassMemory {
+    rows: Column<f32>,
+    impulses: Impulses<f32>,
+    coloring: Coloring,
+    cut_for: usize,
+}
+
 impl Stage for Pass<'_> {
-    type Memory = Column<f32>;
+    type Memory = PassMemory;
 
     fn elements(&self) -> usize {
         self.manifolds.len()
     }
 
-    fn memory(&self) -> Column<f32> {
-        self.rows.clone()
+    fn memory(&self) -> PassMemory {
+        let mut impulses = Impulses::default();
+        impulses.carry(self.manifolds);
+        PassMemory { rows: self.rows.clone(), impulses, coloring: self.coloring.clone(), cut_for: 0 }
     }
 
-    fn run<L: Lanes<Elem = f32>>(&self, rows: &mut Column<f32>) {
+    fn run<L: Lanes<Elem = f32>>(&self, memory: &mut PassMemory) {
+        let PassMemory { rows, impulses, coloring, cut_for } = memory;
+        if *cut_for != L::WIDTH {
+            coloring.cut::<L>(self.manifolds);
+            *cut_for = L::WIDTH;
+        }
         let traits = Traits { friction: true, restitution: true };
-        solve::solve::<L>(SOLVER, traits, self.manifolds, &self.coloring, rows);
+        solve::solve::<L>(self.solver, traits, DT_SECS, self.manifolds, impulses, coloring, rows);
     }
 
-    fn answer(&self, rows: &Column<f32>) -> Answer {
-        let changed = rows.rows().iter().zip(self.rows.rows()).filter(|(after, before)| after != before);
-        answer_of(changed.count(), bits(rows.rows()))
+    fn answer(&self, memory: &PassMemory) -> Answer {
+        let rows = memory.rows.rows();
+        let changed = rows.iter().zip(self.rows.rows()).filter(|(after, before)| after != before);
+        answer_of(changed.count(), bits(rows))
     }
 
     /// A second pass would find the contacts solved: each gets the rows as they were, copied into the same
     /// memory so that they stay in cache, while the clock stands.
-    fn time<L: Lanes<Elem = f32>>(&self, bencher: &mut Bencher<'_>, rows: &mut Column<f32>) {
+    fn time<L: Lanes<Elem = f32>>(&self, bencher: &mut Bencher<'_>, memory: &mut PassMemory) {
         bencher.iter_custom(|passes| {
             let mut elapsed = Duration::ZERO;
             for _ in 0..passes {
-                rows.padded_mut().copy_from_slice(self.rows.padded());
+                memory.rows.padded_mut().copy_from_slice(self.rows.padded());
                 let start = Instant::now();
-                self.run::<L>(black_box(&mut *rows));
+                self.run::<L>(black_box(&mut *memory));
                 elapsed += start.elapsed();
             }
             elapsed
@@ -405,14 +424,17 @@ impl Stage for Pass<'_> {
 }
 
 fn solve_alone(criterion: &mut Criterion, settled: &Settled) {
-    let mut group = criterion.benchmark_group("solve");
-    // Contacts of one point, and mostly of two.
-    for mix in ["circles", "polygons"] {
-        for size in SIZES {
-            let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
-            let stage = Pass { manifolds: &pile.manifolds, coloring: pile.coloring(), rows: pile.rows() };
-            at_every_width(&mut group, mix, size, &stage, &Agreement::default());
+    for &solver in Solver::ALL {
+        let mut group = criterion.benchmark_group(format!("solve {solver}"));
+        // Contacts of one point, and mostly of two.
+        for mix in ["circles", "polygons"] {
+            for size in SIZES {
+                let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
+                let (manifolds, coloring, rows) = (&pile.manifolds, pile.coloring(), pile.rows());
+                let stage = Pass { solver, manifolds, coloring, rows };
+                at_every_width(&mut group, mix, size, &stage, &Agreement::default());
+            }
         }
+        group.finish();
     }
-    group.finish();
 }
