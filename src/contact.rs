@@ -5,7 +5,7 @@
 //! the same rows; what is unused is 0.
 
 use crate::column::Column;
-use crate::lanes::{ROW, Real};
+use crate::lanes::{Lanes, ROW, Real};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.
@@ -68,16 +68,15 @@ pub mod impulse {
 /// Impulses carried from step to step by contacts that persist: same pair, same features.
 #[derive(Clone, Debug)]
 pub struct Impulses<R: Real> {
-    keys: Vec<(u64, [Feature; 2])>,
+    keys: Vec<Key>,
     rows: Column<R>,
-    old_keys: Vec<(u64, [Feature; 2])>,
     old_rows: Column<R>,
 }
 
 impl<R: Real> Default for Impulses<R> {
     fn default() -> Self {
         let rows = || Column::new(R::ZERO);
-        Self { keys: Vec::new(), rows: rows(), old_keys: Vec::new(), old_rows: rows() }
+        Self { keys: Vec::new(), rows: rows(), old_rows: rows() }
     }
 }
 
@@ -93,34 +92,50 @@ impl<R: Real> Impulses<R> {
     }
 
     /// Takes over the impulses of contacts that persist and starts new ones at 0. Both lists ascend, so one
-    /// walk along them finds all; returns how many points were carried.
-    pub fn carry(&mut self, manifolds: &Manifolds<R>) -> usize {
-        std::mem::swap(&mut self.keys, &mut self.old_keys);
+    /// walk along them finds all. Says whether the contacts are the very same as last time, one for one.
+    pub fn carry(&mut self, manifolds: &Manifolds<R>) -> bool {
+        if self.keys == manifolds.keys {
+            for row in &mut self.rows.rows_mut()[..self.keys.len()] {
+                row[impulse::BOUNCE..impulse::BOUNCE + 2].fill(R::ZERO);
+            }
+            return true;
+        }
         std::mem::swap(&mut self.rows, &mut self.old_rows);
-        self.keys.clear();
         if self.rows.rows().len() < manifolds.len() {
             self.rows.resize(manifolds.len() * ROW * 2);
         }
         let (old_rows, rows) = (self.old_rows.rows(), self.rows.rows_mut());
-        let (mut at, mut carried) = (0, 0);
+        let mut old = self.keys.iter().zip(old_rows).map(|(key, row)| (key.order(), key, row)).peekable();
         for (row, key) in rows.iter_mut().zip(&manifolds.keys) {
             let order = key.order();
-            self.keys.push((order, key.features));
-            *row = [R::ZERO; ROW];
-            while self.old_keys.get(at).is_some_and(|old| old.0 < order) {
-                at += 1;
-            }
-            let Some((_, features)) = self.old_keys.get(at).filter(|old| old.0 == order) else { continue };
-            for k in 0..key.points as usize {
-                if let Some(j) = features.iter().position(|f| *f == key.features[k]) {
-                    row[impulse::NORMAL + k] = old_rows[at][impulse::NORMAL + j];
-                    row[impulse::TANGENT + k] = old_rows[at][impulse::TANGENT + j];
-                    carried += 1;
-                }
+            while old.next_if(|(old_order, ..)| *old_order < order).is_some() {}
+            *row = match old.next_if(|(old_order, ..)| *old_order == order) {
+                Some((_, old_key, old_row)) => carried(key, old_key, old_row),
+                None => [R::ZERO; ROW],
+            };
+        }
+        self.keys.clone_from(&manifolds.keys);
+        debug_assert!(
+            self.keys.is_sorted_by_key(Key::order),
+            "the narrow phase goes through its buckets in order"
+        );
+        false
+    }
+}
+
+/// The impulses of the points that persist, matched by feature.
+#[inline(always)]
+fn carried<R: Real>(key: &Key, old_key: &Key, old: &[R; ROW]) -> [R; ROW] {
+    let mut row = [R::ZERO; ROW];
+    for k in 0..key.points as usize {
+        for j in 0..old_key.points as usize {
+            if old_key.features[j] == key.features[k] {
+                row[impulse::NORMAL + k] = old[impulse::NORMAL + j];
+                row[impulse::TANGENT + k] = old[impulse::TANGENT + j];
             }
         }
-        carried
     }
+    row
 }
 
 /// The contacts of a step, in the order of buckets and pairs.
@@ -171,6 +186,20 @@ impl<R: Real> Manifolds<R> {
         self.keys.push(key);
         self.geometry.rows_mut()[at] = geometry;
         self.surface.rows_mut()[at] = surface;
+    }
+
+    /// Appends a whole batch of contacts, rows given as lanes; there must be room for them.
+    #[inline(always)]
+    pub fn push_all<L: Lanes<Elem = R>>(
+        &mut self,
+        keys: impl Iterator<Item = Key>,
+        geometry: [L; ROW],
+        surface: [L; ROW],
+    ) {
+        let at = self.keys.len();
+        self.keys.extend(keys);
+        L::store_rows(geometry, &mut self.geometry.rows_mut()[at..]);
+        L::store_rows(surface, &mut self.surface.rows_mut()[at..]);
     }
 
     /// The contact at a position in the list.

@@ -147,7 +147,10 @@ impl<L: Lanes> World<L> {
         lap(&mut self.times, Stage::Broad);
 
         self.bodies.refresh_polygons();
-        self.narrow.run::<L>(&self.bodies, self.broad.pairs(), margin);
+        if !found.kept {
+            self.narrow.deal(&self.bodies, self.broad.pairs());
+        }
+        self.narrow.collide::<L>(&self.bodies, margin);
         lap(&mut self.times, Stage::Narrow);
 
         let manifolds = &self.narrow.manifolds;
@@ -161,11 +164,12 @@ impl<L: Lanes> World<L> {
             skipped = integrate::fly::<L>(&plan, &mut self.bodies);
             lap(&mut self.times, Stage::Integrate);
         } else {
-            if solve::carries_impulses(solver) {
-                self.impulses.carry(manifolds);
+            let same = solve::carries_impulses(solver) && self.impulses.carry(manifolds);
+            if !same || manifolds.is_empty() {
+                // The very same contacts keep their colours and batches.
+                self.coloring.run(&self.bodies, manifolds);
+                self.coloring.cut::<L>(manifolds);
             }
-            self.coloring.run(&self.bodies, manifolds);
-            self.coloring.cut::<L>(manifolds);
             lap(&mut self.times, Stage::Prepare);
             let needed = self.traits.needed(skips);
             for _ in 0..substeps {

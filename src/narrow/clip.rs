@@ -83,7 +83,7 @@ pub(super) fn clip<L: Lanes>(
         normal: Vec2::select(flipped, -face.normal, face.normal),
         arms: [Vec2::select(only_second, arms[1], arms[0]), arms[1]],
         separations: [pick(separations[0], separations[1]), separations[1]],
-        features: [pick(features[0], features[1]), features[1]],
+        features: Some([pick(features[0], features[1]), features[1]]),
         hits: [first | second, first & second],
     }
 }

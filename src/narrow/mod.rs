@@ -56,8 +56,8 @@ pub struct Found<L: Lanes> {
     pub arms: [Vec2<L>; 2],
     /// Metres, negative where they overlap.
     pub separations: [L; 2],
-    /// Feature ids as whole numbers.
-    pub features: [L; 2],
+    /// Feature ids as whole numbers; `None` where all are 0.
+    pub features: Option<[L; 2]>,
     /// Which points exist; where the second does, so does the first.
     pub hits: [L::Mask; 2],
 }
@@ -71,7 +71,7 @@ impl<L: Lanes> Found<L> {
             normal,
             arms: [arm, Vec2::zero()],
             separations: [separation, L::zero()],
-            features: [L::zero(); 2],
+            features: None,
             hits: [separation.le(margin), never],
         }
     }
@@ -97,7 +97,7 @@ fn bucket_of(a: Form, b: Form) -> usize {
 #[derive(Clone, Debug)]
 pub struct Narrow<R: Real> {
     poses: Column<R>,
-    buckets: [Vec<[u32; 2]>; 6],
+    buckets: [Bucket; 6],
     /// Rows and feature ids of one batch, lane by lane.
     scratch: [[[R; ROW]; 16]; 2],
     features: [[R; 16]; 2],
@@ -122,9 +122,29 @@ impl<R: Real> Narrow<R> {
     ///
     /// Reads poses and shapes; polygons' world rows must be fresh ([`Bodies::refresh_polygons`]).
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
+        self.deal(bodies, pairs);
+        self.collide::<L>(bodies, margin);
+    }
+
+    /// Deals pairs into buckets; they serve until the list of pairs changes.
+    pub fn deal(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
+        for bucket in &mut self.buckets {
+            bucket.clear();
+        }
+        for &[a, b] in pairs {
+            let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
+            let pair = if form_a <= form_b { [a, b] } else { [b, a] };
+            self.buckets[bucket_of(form_a.min(form_b), form_a.max(form_b))].push(pair);
+        }
+        for bucket in &mut self.buckets {
+            bucket.pad();
+        }
+    }
+
+    /// Finds the contacts of the pairs last dealt; see [`Narrow::run`].
+    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R) {
         self.manifolds.clear();
-        self.sort_into_buckets(bodies, pairs);
-        if pairs.is_empty() {
+        if self.buckets.iter().all(|bucket| bucket.len == 0) {
             return;
         }
         self.write_poses::<L>(bodies);
@@ -132,26 +152,27 @@ impl<R: Real> Narrow<R> {
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.buckets);
         self.run_bucket::<L>(0, &cc, |a, b, _| circle_circle::collide(a, b, margin));
         self.run_bucket::<L>(1, &cb, |a, b, _| circle_box::collide(a, b, margin));
-        self.run_bucket::<L>(3, &bb, |a, b, _| box_box::collide(a, b, margin));
         // Loops over edges are unrolled to the next of these: a third fewer instructions than counted ones.
         match bodies.polygons.max_count() {
-            0..=4 => self.run_polygons::<L, 4>(bodies, [&cp, &bp, &pp], margin),
-            5 | 6 => self.run_polygons::<L, 6>(bodies, [&cp, &bp, &pp], margin),
-            _ => self.run_polygons::<L, 8>(bodies, [&cp, &bp, &pp], margin),
+            0..=4 => self.run_edged::<L, 4>(bodies, [&cp, &bb, &bp, &pp], margin),
+            5 | 6 => self.run_edged::<L, 6>(bodies, [&cp, &bb, &bp, &pp], margin),
+            _ => self.run_edged::<L, 8>(bodies, [&cp, &bb, &bp, &pp], margin),
         }
         self.buckets = [cc, cb, cp, bb, bp, pp];
     }
 
-    /// The buckets with polygons in them, none of more than `EDGES` vertices.
-    fn run_polygons<L: Lanes<Elem = R>, const EDGES: usize>(
+    /// The buckets from circle–polygon on, in the order of their numbers (carried impulses are found by it);
+    /// no polygon has more than `EDGES` vertices.
+    fn run_edged<L: Lanes<Elem = R>, const EDGES: usize>(
         &mut self,
         bodies: &Bodies<R>,
-        [cp, bp, pp]: [&[[u32; 2]]; 3],
+        [cp, bb, bp, pp]: [&Bucket; 4],
         margin: L,
     ) {
         let hull =
             |slots: &[u32]| Hull::<L>::gather(&bodies.polygons.world, &polygon_index::<L, R>(bodies, slots));
         self.run_bucket::<L>(2, cp, |a, b, [_, ib]| circle_polygon::collide(a, b, &hull(ib), EDGES, margin));
+        self.run_bucket::<L>(3, bb, |a, b, _| box_box::collide(a, b, margin));
         self.run_bucket::<L>(4, bp, |a, b, [_, ib]| {
             polygon_polygon::collide::<L, EDGES>(a, b, &Hull::of_box(a), &hull(ib), margin)
         });
@@ -162,19 +183,7 @@ impl<R: Real> Narrow<R> {
 
     /// Pairs that went into each bucket in the last run, with the bucket's forms.
     pub fn bucket_sizes(&self) -> [(Form, Form, usize); 6] {
-        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.buckets[k].len()))
-    }
-
-    fn sort_into_buckets(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
-        for bucket in &mut self.buckets {
-            bucket.clear();
-        }
-        for &[a, b] in pairs {
-            let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
-            let (pair, forms) =
-                if form_a <= form_b { ([a, b], (form_a, form_b)) } else { ([b, a], (form_b, form_a)) };
-            self.buckets[bucket_of(forms.0, forms.1)].push(pair);
-        }
+        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.buckets[k].len))
     }
 
     fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
@@ -199,24 +208,23 @@ impl<R: Real> Narrow<R> {
     #[inline(always)]
     fn run_bucket<L: Lanes<Elem = R>>(
         &mut self,
-        bucket: u16,
-        pairs: &[[u32; 2]],
+        number: u16,
+        bucket: &Bucket,
         collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2]) -> Found<L>,
     ) {
-        self.manifolds.reserve(pairs.len());
-        for batch in pairs.chunks(L::WIDTH) {
-            let (mut ia, mut ib) = ([0; 16], [0; 16]);
-            for (lane, &[a, b]) in batch.iter().enumerate() {
-                (ia[lane], ib[lane]) = (a, b);
-            }
-            let a = Pose::gather(self.poses.rows(), &ia);
-            let b = Pose::gather(self.poses.rows(), &ib);
-            let found = collide(&a, &b, [&ia, &ib]);
-            let real_lanes = (1u32 << batch.len()) - 1;
+        self.manifolds.reserve(bucket.len + 16);
+        let mut at = 0;
+        while at < bucket.len {
+            let slots = [&bucket.a[at..at + L::WIDTH], &bucket.b[at..at + L::WIDTH]];
+            let a = Pose::gather(self.poses.rows(), slots[0]);
+            let b = Pose::gather(self.poses.rows(), slots[1]);
+            let found = collide(&a, &b, slots);
+            let real_lanes = (1u32 << (bucket.len - at).min(L::WIDTH)) - 1;
             let hits = found.hits.map(|mask| mask.bits() & real_lanes);
             if hits[0] != 0 {
-                self.keep(&a, &b, &found, hits, [&ia, &ib], bucket);
+                self.keep(&a, &b, &found, hits, slots, number);
             }
+            at += L::WIDTH;
         }
     }
 
@@ -227,35 +235,70 @@ impl<R: Real> Narrow<R> {
         b: &Pose<L>,
         found: &Found<L>,
         hits: [u32; 2],
-        [ia, ib]: [&[u32]; 2],
+        slots: [&[u32]; 2],
         bucket: u16,
     ) {
         let from_b = a.x - b.x;
         let [arm0, arm1] = found.arms;
         let [arm_b0, arm_b1] = found.arms.map(|arm| arm + from_b);
         let (friction, restitution) = (a.friction.min(b.friction), a.restitution.min(b.restitution));
-        let [s0, s1] = found.separations;
-        let zero = L::zero();
-        let rows = [
-            [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, s0, s1],
-            [arm_b0.x, arm_b0.y, arm_b1.x, arm_b1.y, friction, restitution, zero, zero],
-        ];
-        let [geometry, surface] = &mut self.scratch;
-        L::store_rows(rows[0], geometry);
-        L::store_rows(rows[1], surface);
-        found.features[0].store(&mut self.features[0]);
-        found.features[1].store(&mut self.features[1]);
-        for lane in set_lanes(hits[0]) {
-            let feature = |k: usize| self.features[k][lane].to_f64() as u16;
-            let key = Key {
-                a: ia[lane],
-                b: ib[lane],
-                features: [feature(0), feature(1)],
-                points: 1 + (hits[1] >> lane & 1) as u16,
-                bucket,
-            };
-            self.manifolds.push(key, geometry[lane], surface[lane]);
+        let ([s0, s1], zero) = (found.separations, L::zero());
+        let geometry = [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, s0, s1];
+        let surface = [arm_b0.x, arm_b0.y, arm_b1.x, arm_b1.y, friction, restitution, zero, zero];
+        if let Some(features) = found.features {
+            features[0].store(&mut self.features[0]);
+            features[1].store(&mut self.features[1]);
         }
+        let key = |lane: usize| Key {
+            a: slots[0][lane],
+            b: slots[1][lane],
+            features: match found.features {
+                Some(_) => [0, 1].map(|k| self.features[k][lane].to_f64() as u16),
+                None => [0; 2],
+            },
+            points: 1 + (hits[1] >> lane & 1) as u16,
+            bucket,
+        };
+        if hits[0].count_ones() as usize == L::WIDTH {
+            // Every lane touches, as in a pile most do: rows go straight to their places.
+            self.manifolds.push_all::<L>((0..L::WIDTH).map(key), geometry, surface);
+        } else {
+            let [geometry_rows, surface_rows] = &mut self.scratch;
+            L::store_rows(geometry, geometry_rows);
+            L::store_rows(surface, surface_rows);
+            for lane in set_lanes(hits[0]) {
+                self.manifolds.push(key(lane), geometry_rows[lane], surface_rows[lane]);
+            }
+        }
+    }
+}
+
+/// The pairs of one pair of forms, A and B apart so that a batch's slots are two slices.
+#[derive(Clone, Debug, Default)]
+struct Bucket {
+    a: Vec<u32>,
+    b: Vec<u32>,
+    /// Pairs; behind them the world against itself, up to whole lanes at every width.
+    len: usize,
+}
+
+impl Bucket {
+    fn clear(&mut self) {
+        self.a.clear();
+        self.b.clear();
+    }
+
+    #[inline(always)]
+    fn push(&mut self, [a, b]: [u32; 2]) {
+        self.a.push(a);
+        self.b.push(b);
+    }
+
+    fn pad(&mut self) {
+        self.len = self.a.len();
+        let padded = self.len.next_multiple_of(16);
+        self.a.resize(padded, 0);
+        self.b.resize(padded, 0);
     }
 }
 
