@@ -14,12 +14,19 @@
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
 //! number (4 B and a trigonometric call wherever it is used).
 
+mod check;
+mod polygons;
+
 use std::ops::Range;
 
 use crate::column::Column;
 use crate::lanes::{ROW, Real};
 use crate::scene::{BodyKind, BodySpec};
-use crate::shape::{Shape, ShapeError, edge_normals};
+use crate::shape::Shape;
+
+pub use check::BodyError;
+use check::Checker;
+pub use polygons::{HullRows, Polygons};
 
 /// A body's stable name: slot and generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,82 +42,6 @@ impl BodyId {
     }
 }
 
-/// Why a body was refused: which one (in order of insertion), which field, which value.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BodyError {
-    /// Its shape is bad.
-    #[error("body {body}: shape: {why}")]
-    Shape {
-        /// Its number in order of insertion, from 0.
-        body: usize,
-        /// What is wrong with the shape.
-        why: ShapeError,
-    },
-    /// NaN, infinite, or too large for the world's precision.
-    #[error("body {body}: {field} is not finite in this precision: {value:?}")]
-    NonFinite {
-        /// Its number.
-        body: usize,
-        /// The field.
-        field: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// Outside the range the field has.
-    #[error("body {body}: {field} must be {range}, got {value:?}")]
-    OutOfRange {
-        /// Its number.
-        body: usize,
-        /// The field.
-        field: &'static str,
-        /// What is allowed.
-        range: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// Both were given.
-    #[error("body {body}: give mass or density, not both (mass {mass:?}, density {density:?})")]
-    MassAndDensity {
-        /// Its number.
-        body: usize,
-        /// What was given.
-        mass: f64,
-        /// What was given.
-        density: f64,
-    },
-    /// A static body cannot move.
-    #[error("body {body}: a static body has no {field}, got {value:?}; make it kinematic")]
-    StaticMoves {
-        /// Its number.
-        body: usize,
-        /// The field.
-        field: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// No living body has this id.
-    #[error("no living body has the id of slot {slot}, generation {generation}")]
-    Stale {
-        /// The id's slot.
-        slot: u32,
-        /// The id's generation.
-        generation: u32,
-    },
-    /// NaN, infinite, or too large for the world's precision, for a body that is in the world.
-    #[error("body in slot {slot}: {field} is not finite in this precision: {value:?}")]
-    NonFiniteInSlot {
-        /// Its slot: once slots are filled again, its number is not to be had from it.
-        slot: u32,
-        /// The field.
-        field: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// Only dynamic bodies take impulses.
-    #[error("body in slot {0} is not dynamic: an impulse cannot move it")]
-    NotDynamic(u32),
-}
-
 /// The kinds a kernel can be written for, in the order in which a pair names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -121,60 +52,6 @@ pub enum Form {
     Box = 1,
     /// A convex polygon.
     Polygon = 2,
-}
-
-/// A polygon's four rows: x and y of its vertices, x and y of the outward normals of the edges that start
-/// there. Entry `k` of a row belongs to vertex or edge `k`.
-///
-/// Entries past the last repeat entry 0: a repeated axis or vertex changes no minimum and no maximum, so
-/// polygons of different counts may share a batch, and the edge from vertex k ends at vertex
-/// (k + 1) mod 8 for every count.
-pub type HullRows<R> = [[R; ROW]; 4];
-
-/// Vertices and normals of all polygons; one entry per polygon, so that a gather finds its rows together.
-#[derive(Clone, Debug, Default)]
-pub struct Polygons<R> {
-    /// In the body frame, about the centroid.
-    pub body: Vec<HullRows<R>>,
-    /// In world axes, about the centroid; refreshed each step.
-    pub world: Vec<HullRows<R>>,
-    /// Vertices.
-    pub count: Vec<u8>,
-    /// The body that has it; 0 where it is free.
-    pub owner: Vec<u32>,
-    free: Vec<u32>,
-}
-
-impl<R: Real> Polygons<R> {
-    fn insert(&mut self, shape: &Shape, owner: u32) -> u32 {
-        let at = self.free.pop().map_or(self.owner.len(), |at| at as usize);
-        if at == self.owner.len() {
-            self.body.push([[R::ZERO; ROW]; 4]);
-            self.world.push([[R::ZERO; ROW]; 4]);
-            self.count.push(0);
-            self.owner.push(0);
-        }
-        let outline = shape.outline();
-        let normals = edge_normals(&outline);
-        let row = |f: &dyn Fn(usize) -> f64| {
-            std::array::from_fn(|k| R::from_f64(f(if k < outline.len() { k } else { 0 })))
-        };
-        self.body[at] =
-            [row(&|k| outline[k].x), row(&|k| outline[k].y), row(&|k| normals[k].x), row(&|k| normals[k].y)];
-        self.count[at] = outline.len() as u8;
-        self.owner[at] = owner;
-        at as u32
-    }
-
-    fn remove(&mut self, at: u32) {
-        self.owner[at as usize] = 0;
-        self.free.push(at);
-    }
-
-    /// The largest number of vertices of any polygon; 0 without polygons.
-    pub fn max_count(&self) -> usize {
-        self.count.iter().copied().max().unwrap_or(0).into()
-    }
 }
 
 /// What decides whether a pair may collide, together so that a pair costs two loads. 12 B.
@@ -589,99 +466,5 @@ impl<R: Real> Bodies<R> {
                 column[slot] = R::from_f64(value);
             }
         }
-    }
-}
-
-struct InverseMass {
-    inv_mass: f64,
-    inv_inertia: f64,
-}
-
-/// Checks the fields of the `body`-th specification.
-struct Checker {
-    body: usize,
-}
-
-impl Checker {
-    fn check<R: Real>(&self, spec: &BodySpec, shape: &Shape) -> Result<InverseMass, BodyError> {
-        let body = self.body;
-        let finite = |field, value: f64| {
-            if R::from_f64(value).is_finite() {
-                Ok(())
-            } else {
-                Err(BodyError::NonFinite { body, field, value })
-            }
-        };
-        let within = |field, value: f64, range, good: bool| {
-            if good { Ok(()) } else { Err(BodyError::OutOfRange { body, field, range, value }) }
-        };
-        for (field, value) in [
-            ("position", spec.position[0]),
-            ("position", spec.position[1]),
-            ("angle", spec.angle),
-            ("velocity", spec.velocity[0]),
-            ("velocity", spec.velocity[1]),
-            ("angular_velocity", spec.angular_velocity),
-            ("force", spec.force[0]),
-            ("force", spec.force[1]),
-            ("torque", spec.torque),
-            ("friction", spec.friction),
-        ] {
-            finite(field, value)?;
-        }
-        // Beyond this a squared distance would overflow, or meet the padding.
-        let reach = R::FAR.to_f64() * 1e-3;
-        for value in spec.position {
-            within(
-                "position",
-                value,
-                "less than 1e15 (f32) or 1e97 (f64) from the origin",
-                value.abs() < reach,
-            )?;
-        }
-        let radius = shape.bounding_radius();
-        within("shape size", radius, "less than 1e15 (f32) or 1e97 (f64) metres", radius < reach)?;
-        within("friction", spec.friction, "at least 0", spec.friction >= 0.0)?;
-        within("restitution", spec.restitution, "0 to 1", (0.0..=1.0).contains(&spec.restitution))?;
-        if spec.kind == BodyKind::Static {
-            let moving = [("velocity", spec.velocity[0]), ("velocity", spec.velocity[1])];
-            let spin = [("angular_velocity", spec.angular_velocity)];
-            if let Some(&(field, value)) = moving.iter().chain(&spin).find(|(_, value)| *value != 0.0) {
-                return Err(BodyError::StaticMoves { body, field, value });
-            }
-        }
-        self.inverse_mass::<R>(spec, shape)
-    }
-
-    fn inverse_mass<R: Real>(&self, spec: &BodySpec, shape: &Shape) -> Result<InverseMass, BodyError> {
-        let body = self.body;
-        let range = "positive and finite";
-        for (field, value) in [("mass", spec.mass), ("density", spec.density)] {
-            if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
-                return Err(BodyError::OutOfRange { body, field, range, value });
-            }
-        }
-        let properties = shape.mass_properties();
-        let mass = match (spec.mass, spec.density) {
-            (Some(mass), Some(density)) => return Err(BodyError::MassAndDensity { body, mass, density }),
-            (Some(mass), None) => mass,
-            (None, density) => density.unwrap_or(1.0) * properties.area,
-        };
-        if spec.kind != BodyKind::Dynamic {
-            return Ok(InverseMass { inv_mass: 0.0, inv_inertia: 0.0 });
-        }
-        let inertia = mass / properties.area * properties.second_moment;
-        let representable = |field, value: f64| {
-            let inverse = R::from_f64(1.0 / value);
-            if inverse.is_finite() && inverse > R::ZERO {
-                Ok(1.0 / value)
-            } else {
-                Err(BodyError::OutOfRange { body, field, range: "invertible in this precision", value })
-            }
-        };
-        Ok(InverseMass {
-            inv_mass: representable("mass", mass)?,
-            inv_inertia: representable("moment of inertia", inertia)?,
-        })
     }
 }

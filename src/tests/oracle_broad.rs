@@ -11,7 +11,7 @@ mod common;
 use common::{Everywhere, Solid, bodies_of, contact_bits};
 use glam::DVec2;
 use lamina2d::body::{Bodies, Form};
-use lamina2d::broad::{BRUTE_LIMIT, BroadPhase};
+use lamina2d::broad::{BRUTE_LIMIT, BroadPhase, SWEEP_LIMIT};
 use lamina2d::lanes::Real;
 use lamina2d::measure::{Outline, penetration};
 use lamina2d::scene::{BodyKind, BodySpec, ShapeSpec};
@@ -288,7 +288,8 @@ fn auto_changes_its_method_without_changing_its_pairs() {
         }
     }
     assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, BRUTE_LIMIT), Broad::Brute);
-    assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, BRUTE_LIMIT + 1), Broad::Grid);
+    assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, BRUTE_LIMIT + 1), Broad::Sweep);
+    assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, SWEEP_LIMIT + 1), Broad::Grid);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Circles, boxes and convex polygons; every pair tested in every step; one contact point, resolved where
 //! it is found. Written from what the thesis's text, result sheets and published sources state as facts;
 //! no line of its code is here. Its defects are kept because they are part of what is measured, and each
-//! is a test (`tests/thesis.rs`).
+//! is a test (`src/tests/thesis.rs`).
 //!
 //! [`Version::Faithful`] keeps the original's memory layout and repeated work. [`Version::Tidy`] is the same
 //! algorithm with the obvious waste removed, so that no speed-up is won from a straw man.
