@@ -35,22 +35,16 @@ pub struct Batch {
 }
 
 impl Batch {
-    fn new<R: Real>(manifolds: &Manifolds<R>, contacts: &[u32], points: usize) -> Self {
+    /// A group's contacts all have as many points as its first; the overflow comes one contact at a time.
+    fn new<R: Real>(manifolds: &Manifolds<R>, contacts: &[u32]) -> Self {
+        let points = manifolds.keys[contacts[0] as usize].points as usize;
         let mut batch = Self { contact: [0; 16], a: [0; 16], b: [0; 16], len: contacts.len(), points };
         for (lane, &contact) in contacts.iter().enumerate() {
             let key = &manifolds.keys[contact as usize];
             (batch.contact[lane], batch.a[lane], batch.b[lane]) = (contact, key.a, key.b);
-            if group_is_mixed(points, key.points) {
-                batch.points = 1;
-            }
         }
         batch
     }
-}
-
-/// An overflow batch holds one contact and takes its number of points.
-fn group_is_mixed(points: usize, of_contact: u16) -> bool {
-    points == 2 && of_contact == 1
 }
 
 /// Contacts sorted by colour; memory is kept from step to step.
@@ -115,10 +109,9 @@ impl Coloring {
     pub fn cut<L: Lanes>(&mut self, manifolds: &Manifolds<L::Elem>) {
         self.batches.clear();
         for group in 0..=GROUPS {
-            let (width, points) = if group < GROUPS { (L::WIDTH, 2 - group % 2) } else { (1, 2) };
-            let range = self.starts[group] as usize..self.starts[group + 1] as usize;
-            let batches = self.order[range].chunks(width);
-            self.batches.extend(batches.map(|contacts| Batch::new(manifolds, contacts, points)));
+            let width = if group < GROUPS { L::WIDTH } else { 1 };
+            let batches = self.order[self.range(group)].chunks(width);
+            self.batches.extend(batches.map(|contacts| Batch::new(manifolds, contacts)));
         }
     }
 
