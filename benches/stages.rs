@@ -8,11 +8,12 @@
 //! | `integrate` | [`integrate::fly`]: one step of free flight, attitudes turned | state hash, same with the closed form |
 //! | `broad` | [`BroadPhase::find`] | the pairs, same for all methods |
 //! | `narrow` | [`Narrow::run`] on the pairs of one bucket, its pose rows included | the manifolds |
-//! | `prepare` | [`Coloring::run`], which has no lanes | every contact once, no dynamic body twice in a group |
-//! | `solve` | [`solve::solve`]: one pass over all contacts | the rows |
+//! | `prepare` | [`Solving::prepare`]: colours, batches, constraints at 8 lanes | every contact once, no dynamic body twice in a colour |
+//! | `solve` | [`Solving::solve`]: what a substep solves before bodies move | the rows |
 
 mod common;
 
+use std::any::Any;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -20,8 +21,6 @@ use criterion::measurement::WallTime;
 use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, Throughput};
 use lamina2d::body::{Bodies, Form};
 use lamina2d::broad::BroadPhase;
-use lamina2d::column::Column;
-use lamina2d::contact::{Impulses, Manifolds};
 use lamina2d::force::{Field, Forces};
 use lamina2d::integrate::{self, Motion, Plan};
 use lamina2d::lanes::{Lanes, f32s};
@@ -29,8 +28,7 @@ use lamina2d::measure::state_hash;
 use lamina2d::narrow::Narrow;
 use lamina2d::scene::BodyKind;
 use lamina2d::settings::{Broad, Integrator, Skip, Skips, Solver};
-use lamina2d::solve::color::Coloring;
-use lamina2d::solve::{self, Traits};
+use lamina2d::solve::{self, Solving, Task, Traits};
 use lamina2d::world::World;
 use xxhash_rust::xxh3::Xxh3Default;
 
@@ -38,8 +36,13 @@ use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, criterion};
 
 /// Dynamic bodies of the scenes.
 const SIZES: [usize; 2] = [150, 1000];
-/// The solver that runs, and the distance within which it wants to hear of contacts.
-const SOLVER: Solver = Solver::Pgs;
+/// Median bounding radius of the mixes' bodies, near enough, metres.
+const LENGTH_M: f64 = 0.4;
+
+/// The gap within which solvers want to hear of contacts, metres.
+fn margin() -> f32 {
+    Traits { friction: true, restitution: true, length: LENGTH_M, gravity: 9.81 }.margin(Solver::Soft)
+}
 
 type Group<'a> = BenchmarkGroup<'a, WallTime>;
 
@@ -110,11 +113,6 @@ fn at_width<L: Lanes<Elem = f32>, S: Stage>(
     });
 }
 
-/// Values as bits, −0 as 0: the contract is about values.
-fn bits(rows: &[[f32; 8]]) -> impl Iterator<Item = u64> + '_ {
-    rows.iter().flatten().map(|value| u64::from((value + 0.0).to_bits()))
-}
-
 /// `count` things that consist of `values`.
 fn answer_of(count: usize, values: impl Iterator<Item = u64>) -> Answer {
     let mut hasher = Xxh3Default::new();
@@ -145,7 +143,10 @@ impl Stage for Flight {
 
     fn run<L: Lanes<Elem = f32>>(&self, bodies: &mut Bodies<f32>) {
         let Self { integrator, ref fields, skips, .. } = *self;
-        integrate::fly::<L>(&Plan { integrator, fields, h_secs: DT_SECS, substeps: 1, skips }, bodies);
+        integrate::fly::<L>(
+            &Plan { integrator, fields, h_secs: DT_SECS, substeps: 1, skips, moving: false },
+            bodies,
+        );
     }
 
     fn answer(&self, bodies: &Bodies<f32>) -> Answer {
@@ -197,7 +198,7 @@ impl Stage for Pairs<'_> {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
-        broad.find::<L>(self.bodies, self.method, solve::margin(SOLVER), false);
+        broad.find::<L>(self.bodies, self.method, margin(), false);
     }
 
     fn answer(&self, broad: &BroadPhase<f32>) -> Answer {
@@ -238,18 +239,18 @@ impl Stage for Bucket<'_> {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, narrow: &mut Narrow<f32>) {
-        narrow.run::<L>(self.bodies, &self.pairs, solve::margin(SOLVER));
+        narrow.run::<L>(self.bodies, &self.pairs, margin());
     }
 
     fn answer(&self, narrow: &Narrow<f32>) -> Answer {
-        let Manifolds { keys, geometry, surface } = &narrow.manifolds;
-        let count = keys.len();
-        let names = keys.iter().flat_map(|key| {
-            let [first, second] = key.features.map(u64::from);
-            [u64::from(key.a), u64::from(key.b), first, second, u64::from(key.points)]
+        let found = &narrow.manifolds;
+        let contacts = found.touching().iter().map(|&place| place as usize).flat_map(|at| {
+            let ([a, b], code) = (found.slots(at), found.code(at));
+            let names = [a, b, code.points() as u32, code.feature(0).into(), code.feature(1).into()];
+            let rows = found.geometry()[at].into_iter().chain(found.gaps()[at]);
+            names.map(u64::from).into_iter().chain(rows.map(|value| u64::from(value.to_bits())))
         });
-        let rows = bits(&geometry.rows()[..count]).chain(bits(&surface.rows()[..count]));
-        answer_of(count, names.chain(rows))
+        answer_of(found.len(), contacts)
     }
 }
 
@@ -279,7 +280,7 @@ fn narrow_alone(criterion: &mut Criterion, settled: &Settled) {
 struct Pile {
     bodies: Bodies<f32>,
     pairs: Vec<[u32; 2]>,
-    manifolds: Manifolds<f32>,
+    narrow: Narrow<f32>,
 }
 
 impl Pile {
@@ -287,9 +288,9 @@ impl Pile {
         let mut bodies = world.bodies().clone();
         bodies.refresh_polygons();
         let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
-        broad.find::<f32s::X8>(&bodies, Broad::Auto, solve::margin(SOLVER), false);
-        narrow.run::<f32s::X8>(&bodies, broad.pairs(), solve::margin(SOLVER));
-        Self { pairs: broad.pairs().to_vec(), bodies, manifolds: narrow.manifolds }
+        broad.find::<f32s::X8>(&bodies, Broad::Auto, margin(), false);
+        narrow.run::<f32s::X8>(&bodies, broad.pairs(), margin());
+        Self { pairs: broad.pairs().to_vec(), bodies, narrow }
     }
 
     /// The pairs of these forms, whichever of the two comes first.
@@ -301,26 +302,18 @@ impl Pile {
         self.pairs.iter().copied().filter(is_of).collect()
     }
 
-    fn coloring(&self) -> Coloring {
-        let mut coloring = Coloring::default();
-        coloring.run(&self.bodies, &self.manifolds);
-        coloring
+    /// Motion memory as a step begins.
+    fn motion(&self) -> Motion<f32> {
+        let mut motion = Motion::default();
+        motion.resize(&self.bodies);
+        motion
     }
 
-    /// The rows a solver finds after the prediction of a step under gravity.
-    fn rows(&self) -> Column<f32> {
-        let fields = Forces::gravity().fields();
-        let plan = Plan {
-            integrator: Integrator::SemiImplicitEuler,
-            fields: &fields,
-            h_secs: DT_SECS,
-            substeps: 1,
-            skips: Skips::NONE,
-        };
-        let mut motion = Motion::default();
-        motion.resize(self.bodies.len());
-        integrate::predict::<f32s::X8>(&plan, &self.bodies, &mut motion);
-        motion.rows
+    /// Constraints of all contacts.
+    fn solving<L: Lanes<Elem = f32>>(&self) -> Solving<L> {
+        let (mut solving, mut narrow) = (Solving::default(), self.narrow.clone());
+        solving.prepare(&self.bodies, &mut narrow, true, &self.motion());
+        solving
     }
 }
 
@@ -330,92 +323,130 @@ fn prepare_alone(criterion: &mut Criterion, settled: &Settled) {
         for size in SIZES {
             let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
             check_colors(&pile);
-            let mut coloring = Coloring::default();
-            group.throughput(Throughput::Elements(pile.manifolds.len() as u64));
+            let (mut solving, mut narrow) = (Solving::<f32s::X8>::default(), pile.narrow.clone());
+            let motion = pile.motion();
+            group.throughput(Throughput::Elements(narrow.manifolds.len() as u64));
             group.bench_function(BenchmarkId::new(mix, size), |bencher| {
-                bencher.iter(|| black_box(&mut coloring).run(&pile.bodies, &pile.manifolds));
+                bencher.iter(|| black_box(&mut solving).prepare(&pile.bodies, &mut narrow, true, &motion));
             });
         }
     }
     group.finish();
 }
 
-/// Every contact is in one batch, and no batch holds a dynamic body twice.
+/// Every contact is in one colour, and no colour holds a dynamic body twice.
 fn check_colors(pile: &Pile) {
-    let mut coloring = pile.coloring();
-    coloring.cut::<f32s::X16>(&pile.manifolds);
-    let mut contacts_seen = vec![false; pile.manifolds.len()];
-    for batch in coloring.batches() {
+    let solving = pile.solving::<f32s::X16>();
+    let (coloring, manifolds) = (solving.coloring(), &pile.narrow.manifolds);
+    let mut contacts_seen = vec![false; manifolds.pairs()];
+    for color in coloring.colors() {
         let mut bodies_seen = vec![false; pile.bodies.len()];
-        for lane in 0..batch.len {
-            let contact = batch.contact[lane] as usize;
-            let again = std::mem::replace(&mut contacts_seen[contact], true);
-            assert!(!again, "contact {contact} has two colours");
-            for slot in [batch.a[lane], batch.b[lane]].map(|slot| slot as usize) {
+        for &place in coloring.order()[color.two.start..color.one.end].iter() {
+            let again = std::mem::replace(&mut contacts_seen[place as usize], true);
+            assert!(!again, "the contact at {place} has two colours");
+            for slot in manifolds.slots(place as usize).map(|slot| slot as usize) {
                 let again = std::mem::replace(&mut bodies_seen[slot], true);
                 let moves = pile.bodies.kind(slot) == BodyKind::Dynamic;
-                assert!(!(again && moves), "body {slot} twice in a batch");
+                assert!(!(again && moves), "body {slot} twice in a colour");
             }
         }
     }
-    assert!(!contacts_seen.is_empty(), "nothing touches");
-    assert!(contacts_seen.iter().all(|&seen| seen), "a contact without a colour");
+    let colored = contacts_seen.iter().filter(|&&seen| seen).count();
+    assert!(!manifolds.is_empty(), "nothing touches");
+    assert_eq!(colored + coloring.overflow().len(), manifolds.len(), "a contact without a colour");
 }
 
-/// One substep's solve over the contacts of a pile.
+/// One substep's contacts of a pile, before bodies move.
 struct Pass<'a> {
     solver: Solver,
-    manifolds: &'a Manifolds<f32>,
-    coloring: Coloring,
-    rows: Column<f32>,
+    pile: &'a Pile,
+    fields: Vec<Field<f32>>,
 }
 
-/// What a solver works in: rows, impulses that start at 0, and batches cut for the width in use.
+/// What a solver works in, for the width in use: `Solving<L>` as it was and as a pass left it.
 struct PassMemory {
-    rows: Column<f32>,
-    impulses: Impulses<f32>,
-    coloring: Coloring,
-    cut_for: usize,
+    motion: Motion<f32>,
+    fresh: Motion<f32>,
+    solving: Box<dyn Any>,
+    untouched: Box<dyn Any>,
+    width: usize,
+}
+
+impl Pass<'_> {
+    fn task<'a>(&'a self, plan: &'a Plan<'a, f32>) -> Task<'a, f32> {
+        let traits = Traits { friction: true, restitution: true, length: LENGTH_M, gravity: 9.81 };
+        Task { solver: self.solver, traits, dt_secs: DT_SECS, plan }
+    }
+
+    fn plan(&self) -> Plan<'_, f32> {
+        Plan {
+            integrator: Integrator::VelocityVerlet,
+            fields: &self.fields,
+            h_secs: DT_SECS,
+            substeps: 1,
+            skips: Skips::NONE,
+            moving: solve::pushes(self.solver),
+        }
+    }
+
+    /// Constraints and rows as the first substep finds them under gravity.
+    fn reset<L: Lanes<Elem = f32>>(&self, memory: &mut PassMemory) {
+        if memory.width != L::WIDTH {
+            let (plan, bodies) = (self.plan(), &self.pile.bodies);
+            let mut solving = self.pile.solving::<L>();
+            memory.motion = self.pile.motion();
+            solving.begin(&self.task(&plan), bodies, &mut memory.motion);
+            integrate::predict::<L>(&plan, bodies, &mut memory.motion, true);
+            memory.fresh = memory.motion.clone();
+            memory.untouched = Box::new(solving.clone());
+            memory.solving = Box::new(solving);
+            memory.width = L::WIDTH;
+        }
+        let expected = "built for this width above";
+        let untouched = memory.untouched.downcast_ref::<Solving<L>>().expect(expected);
+        memory.solving.downcast_mut::<Solving<L>>().expect(expected).clone_from(untouched);
+        memory.motion.velocity.padded_mut().copy_from_slice(memory.fresh.velocity.padded());
+    }
+
+    fn pass<L: Lanes<Elem = f32>>(&self, memory: &mut PassMemory) {
+        let plan = self.plan();
+        let solving = memory.solving.downcast_mut::<Solving<L>>().expect("built by a reset");
+        solving.solve(&self.task(&plan), &mut memory.motion, true);
+    }
 }
 
 impl Stage for Pass<'_> {
     type Memory = PassMemory;
 
     fn elements(&self) -> usize {
-        self.manifolds.len()
+        self.pile.narrow.manifolds.len()
     }
 
     fn memory(&self) -> PassMemory {
-        let mut impulses = Impulses::default();
-        impulses.carry(self.manifolds);
-        PassMemory { rows: self.rows.clone(), impulses, coloring: self.coloring.clone(), cut_for: 0 }
+        let (motion, fresh) = (self.pile.motion(), self.pile.motion());
+        PassMemory { motion, fresh, solving: Box::new(()), untouched: Box::new(()), width: 0 }
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, memory: &mut PassMemory) {
-        let PassMemory { rows, impulses, coloring, cut_for } = memory;
-        if *cut_for != L::WIDTH {
-            coloring.cut::<L>(self.manifolds);
-            *cut_for = L::WIDTH;
-        }
-        let traits = Traits { friction: true, restitution: true };
-        solve::solve::<L>(self.solver, traits, DT_SECS, self.manifolds, impulses, coloring, rows);
+        self.reset::<L>(memory);
+        self.pass::<L>(memory);
     }
 
     fn answer(&self, memory: &PassMemory) -> Answer {
-        let rows = memory.rows.rows();
-        let changed = rows.iter().zip(self.rows.rows()).filter(|(after, before)| after != before);
-        answer_of(changed.count(), bits(rows))
+        let (after, before) = (memory.motion.velocity.fours(), memory.fresh.velocity.fours());
+        let changed = after.iter().zip(before).filter(|(after, before)| after != before);
+        answer_of(changed.count(), after.iter().flatten().map(|value| u64::from((value + 0.0).to_bits())))
     }
 
-    /// A second pass would find the contacts solved: each gets the rows as they were, copied into the same
-    /// memory so that they stay in cache, while the clock stands.
+    /// A second pass would find the contacts solved: each gets constraints and rows as they were, copied into the
+    /// same memory so that they stay in cache, while the clock stands.
     fn time<L: Lanes<Elem = f32>>(&self, bencher: &mut Bencher<'_>, memory: &mut PassMemory) {
         bencher.iter_custom(|passes| {
             let mut elapsed = Duration::ZERO;
             for _ in 0..passes {
-                memory.rows.padded_mut().copy_from_slice(self.rows.padded());
+                self.reset::<L>(memory);
                 let start = Instant::now();
-                self.run::<L>(black_box(&mut *memory));
+                self.pass::<L>(black_box(&mut *memory));
                 elapsed += start.elapsed();
             }
             elapsed
@@ -430,8 +461,7 @@ fn solve_alone(criterion: &mut Criterion, settled: &Settled) {
         for mix in ["circles", "polygons"] {
             for size in SIZES {
                 let pile = Pile::of(&settled.get(&format!("{mix}/{size}"), SETTLE_STEPS));
-                let (manifolds, coloring, rows) = (&pile.manifolds, pile.coloring(), pile.rows());
-                let stage = Pass { solver, manifolds, coloring, rows };
+                let stage = Pass { solver, pile: &pile, fields: Forces::gravity().fields() };
                 at_every_width(&mut group, mix, size, &stage, &Agreement::default());
             }
         }

@@ -108,6 +108,7 @@ pub struct Bodies<R: Real> {
     inserted: usize,
     live: usize,
     revision: u64,
+    removals: u64,
 }
 
 impl<R: Real> Default for Bodies<R> {
@@ -147,6 +148,7 @@ impl<R: Real> Bodies<R> {
             inserted: 0,
             live: 0,
             revision: 0,
+            removals: 0,
         };
         bodies.grow();
         bodies
@@ -167,6 +169,10 @@ impl<R: Real> Bodies<R> {
     /// Grows whenever a body is inserted, removed or given another mass or force.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+    /// Bodies ever removed: while it stays, a slot means the same body.
+    pub fn removals(&self) -> u64 {
+        self.removals
     }
     /// The kind of shape in a slot.
     #[inline(always)]
@@ -290,6 +296,7 @@ impl<R: Real> Bodies<R> {
         self.free.insert(at, slot as u32);
         self.live -= 1;
         self.revision += 1;
+        self.removals += 1;
         Ok(())
     }
 

@@ -112,6 +112,18 @@ impl<R: Real> Column<R> {
         bytemuck::cast_slice_mut(&mut self.lines)
     }
 
+    /// Entries and padding as rows of four: what [`Lanes::gather_fours`] reads.
+    #[inline(always)]
+    pub fn fours(&self) -> &[[R; 4]] {
+        bytemuck::cast_slice(&self.lines)
+    }
+
+    /// Entries and padding as rows of four.
+    #[inline(always)]
+    pub fn fours_mut(&mut self) -> &mut [[R; 4]] {
+        bytemuck::cast_slice_mut(&mut self.lines)
+    }
+
     /// Bytes held, padding included.
     pub fn bytes(&self) -> usize {
         size_of_val(self.lines.as_slice())

@@ -1,8 +1,11 @@
-//! What narrow phase and solver share: manifolds.
+//! What narrow phase and solver share: the manifolds of all candidate pairs, kept from step to step.
 //!
-//! A manifold is two rows of eight reals, written by the narrow phase straight into the layout a solver
-//! gathers, beside a key of 16 bytes: 80 B per contact in f32. One-point and two-point manifolds have
-//! the same rows; what is unused is 0.
+//! Each candidate pair has a place in one list, ordered by bucket and slots, and keeps its manifold, its
+//! impulses and its colour there until the pair leaves the list. A pair that does not touch has a manifold
+//! of no points. When the list of pairs changes, one walk along both lists takes over what persists.
+//!
+//! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, colour 1. One-point and two-point
+//! manifolds have the same rows; what is unused is 0 or not looked at.
 
 use crate::column::Column;
 use crate::lanes::{Lanes, ROW, Real};
@@ -11,208 +14,415 @@ use crate::lanes::{Lanes, ROW, Real};
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.
 pub type Feature = u16;
 
-/// Who touches whom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Key {
-    /// Slot of body A: the one of the lesser form (circle < box < polygon), or the lower slot.
-    pub a: u32,
-    /// Slot of body B.
-    pub b: u32,
-    /// One per point.
-    pub features: [Feature; 2],
-    /// 1 or 2.
-    pub points: u16,
-    /// The narrow phase's bucket it came from, 0 to 5.
-    pub bucket: u16,
-}
-
-impl Key {
-    /// Ascends along the list of contacts, and names a pair of slots from step to step: bucket, lower
-    /// slot, higher slot.
-    #[inline(always)]
-    fn order(&self) -> u64 {
-        u64::from(self.bucket) << 60 | u64::from(self.a.min(self.b)) << 30 | u64::from(self.a.max(self.b))
-    }
-}
-
-/// Entries of a manifold's first row.
+/// Entries of a manifold's geometry row.
 pub mod geometry {
     /// Unit normal from A to B, x; y follows.
     pub const NORMAL: usize = 0;
     /// Arm from A's centroid to point 0, world axes, metres: x; y, and point 1, follow.
     pub const ARM_A: usize = 2;
-    /// Separation of point 0, metres, negative where they overlap; point 1 follows.
-    pub const SEPARATION: usize = 6;
+    /// From A's centroid to B's, metres: x; y follows. An arm from B is the arm from A less this.
+    pub const TO_B: usize = 6;
 }
 
-/// Entries of a manifold's second row.
-pub mod surface {
-    /// Arm from B's centroid to point 0, world axes, metres: x; y, and point 1, follow.
-    pub const ARM_B: usize = 0;
+/// Entries of a manifold's gap row.
+pub mod gap {
+    /// Separation of point 0, metres, negative where they overlap; point 1 follows. The solver keeps it up to
+    /// date while the manifold is reused.
+    pub const SEPARATION: usize = 0;
     /// Coulomb coefficient: the smaller of the two bodies'.
-    pub const FRICTION: usize = 4;
+    pub const FRICTION: usize = 2;
     /// Coefficient of restitution: the smaller of the two bodies'.
-    pub const RESTITUTION: usize = 5;
+    pub const RESTITUTION: usize = 3;
 }
 
-/// Entries of a contact's row of impulses.
+/// Entries of a contact's impulse row.
 pub mod impulse {
-    /// Normal impulse of point 0, N·s; point 1 follows.
+    /// Normal impulse of point 0, N·s per substep; point 1 follows.
     pub const NORMAL: usize = 0;
-    /// Tangent impulse of point 0, N·s, along the normal turned a quarter counter-clockwise; point 1 follows.
+    /// Friction impulse, N·s per substep, along the normal turned a quarter counter-clockwise.
     pub const TANGENT: usize = 2;
-    /// Velocity with which point 0 is to part in this step, m/s, negated; point 1 follows.
-    pub const BOUNCE: usize = 4;
 }
 
-/// Impulses carried from step to step by contacts that persist: same pair, same features.
+/// No colour yet.
+pub const UNCOLORED: u8 = u8::MAX;
+
+/// Points and features of a manifold in one number that lanes can hold: f₀ + 2⁸·f₁ + 2¹⁶·points, exact in f32.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code(u32);
+
+impl Code {
+    /// A pair the narrow phase has not looked at.
+    const UNKNOWN: f64 = -1.0;
+
+    /// From what a column holds.
+    #[inline(always)]
+    pub fn of<R: Real>(value: R) -> Self {
+        // Negative for a pair that is new: no points.
+        Self(value.to_f64() as u32)
+    }
+    /// The lanes' codes: features ≤ 255, `points` 0, 1 or 2 as numbers.
+    #[inline(always)]
+    pub fn lanes<L: Lanes>(features: [L; 2], points: L) -> L {
+        features[0] + features[1] * L::lit(256.0) + points * L::lit(65536.0)
+    }
+    /// 0, 1 or 2.
+    #[inline(always)]
+    pub fn points(self) -> usize {
+        (self.0 >> 16) as usize
+    }
+    /// The feature of a point.
+    #[inline(always)]
+    pub fn feature(self, k: usize) -> Feature {
+        (self.0 >> (8 * k) & 0xff) as Feature
+    }
+}
+
+/// One list of pairs with what each keeps. The last two places are no pairs: [`Manifolds::padding`] is all zeros
+/// and is what padding lanes of a solver read; [`Manifolds::spill`] is where padding lanes of the narrow phase write.
 #[derive(Clone, Debug)]
-pub struct Impulses<R: Real> {
-    keys: Vec<Key>,
-    rows: Column<R>,
-    old_rows: Column<R>,
+struct PairTable<R: Real> {
+    /// Slots of the bodies A and B.
+    a: Vec<u32>,
+    b: Vec<u32>,
+    /// Ends of the six buckets.
+    ends: [usize; 6],
+    code: Column<R>,
+    geometry: Column<R>,
+    gap: Column<R>,
+    impulse: Column<R>,
+    color: Vec<u8>,
 }
 
-impl<R: Real> Default for Impulses<R> {
+impl<R: Real> Default for PairTable<R> {
     fn default() -> Self {
-        let rows = || Column::new(R::ZERO);
-        Self { keys: Vec::new(), rows: rows(), old_rows: rows() }
+        let zeros = || Column::new(R::ZERO);
+        let mut table = Self {
+            a: Vec::new(),
+            b: Vec::new(),
+            ends: [0; 6],
+            code: zeros(),
+            geometry: zeros(),
+            gap: zeros(),
+            impulse: zeros(),
+            color: Vec::new(),
+        };
+        table.resize(0);
+        table
     }
 }
 
-impl<R: Real> Impulses<R> {
-    /// Forgets everything: bodies came or went, and slots may mean others now.
-    pub fn forget(&mut self) {
-        self.keys.clear();
+impl<R: Real> PairTable<R> {
+    fn resize(&mut self, pairs: usize) {
+        let places = pairs + 2;
+        self.a.resize(places, 0);
+        self.b.resize(places, 0);
+        self.color.resize(places, UNCOLORED);
+        self.grow_columns(places);
     }
 
-    /// Rows of impulses, one per contact of the last [`Impulses::carry`]; see [`impulse`].
-    pub fn rows_mut(&mut self) -> &mut [[R; ROW]] {
-        self.rows.rows_mut()
+    fn grow_columns(&mut self, places: usize) {
+        if self.code.len() < places {
+            // Grown with room to spare, so that a list that wavers does not allocate.
+            let room = places.next_power_of_two();
+            self.code.resize(room);
+            self.geometry.resize(room * ROW);
+            self.gap.resize(room * 4);
+            self.impulse.resize(room * 4);
+        }
     }
 
-    /// Takes over the impulses of contacts that persist and starts new ones at 0. Both lists ascend, so one
-    /// walk along them finds all. Says whether the contacts are the very same as last time, one for one.
-    pub fn carry(&mut self, manifolds: &Manifolds<R>) -> bool {
-        if self.keys == manifolds.keys {
-            for row in &mut self.rows.rows_mut()[..self.keys.len()] {
-                row[impulse::BOUNCE..impulse::BOUNCE + 2].fill(R::ZERO);
-            }
-            return true;
-        }
-        std::mem::swap(&mut self.rows, &mut self.old_rows);
-        if self.rows.rows().len() < manifolds.len() {
-            self.rows.resize(manifolds.len() * ROW * 2);
-        }
-        let (old_rows, rows) = (self.old_rows.rows(), self.rows.rows_mut());
-        let mut old = self.keys.iter().zip(old_rows).map(|(key, row)| (key.order(), key, row)).peekable();
-        for (row, key) in rows.iter_mut().zip(&manifolds.keys) {
-            let order = key.order();
-            while old.next_if(|(old_order, ..)| *old_order < order).is_some() {}
-            *row = match old.next_if(|(old_order, ..)| *old_order == order) {
-                Some((_, old_key, old_row)) => carried(key, old_key, old_row),
-                None => [R::ZERO; ROW],
-            };
-        }
-        self.keys.clone_from(&manifolds.keys);
-        debug_assert!(
-            self.keys.is_sorted_by_key(Key::order),
-            "the narrow phase goes through its buckets in order"
-        );
-        false
+    /// Room for as many pairs as the other table has, so that the next list does not allocate.
+    fn make_room(&mut self, pairs: usize) {
+        let more = (pairs + 2).saturating_sub(self.a.len());
+        self.a.reserve(more);
+        self.b.reserve(more);
+        self.color.reserve(more);
+        self.grow_columns(pairs + 2);
+    }
+
+    /// The places of a bucket.
+    fn bucket(&self, number: usize) -> std::ops::Range<usize> {
+        let start = if number == 0 { 0 } else { self.ends[number - 1] };
+        start..self.ends[number]
+    }
+
+    /// Lower slot, then higher: ascends along a bucket.
+    #[inline(always)]
+    fn order(&self, at: usize) -> u64 {
+        let (a, b) = (self.a[at], self.b[at]);
+        u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+    }
+
+    fn clear_place(&mut self, at: usize, code: R) {
+        self.code[at] = code;
+        self.geometry.rows_mut()[at] = [R::ZERO; ROW];
+        self.gap.fours_mut()[at] = [R::ZERO; 4];
+        self.impulse.fours_mut()[at] = [R::ZERO; 4];
+        self.color[at] = UNCOLORED;
+    }
+
+    fn take_place(&mut self, at: usize, old: &Self, old_at: usize) {
+        self.code[at] = old.code[old_at];
+        self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];
+        self.gap.fours_mut()[at] = old.gap.fours()[old_at];
+        self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
+        self.color[at] = old.color[old_at];
     }
 }
 
-/// The impulses of the points that persist, matched by feature.
-#[inline(always)]
-fn carried<R: Real>(key: &Key, old_key: &Key, old: &[R; ROW]) -> [R; ROW] {
-    let mut row = [R::ZERO; ROW];
-    for k in 0..key.points as usize {
-        for j in 0..old_key.points as usize {
-            if old_key.features[j] == key.features[k] {
-                row[impulse::NORMAL + k] = old[impulse::NORMAL + j];
-                row[impulse::TANGENT + k] = old[impulse::TANGENT + j];
-            }
-        }
-    }
-    row
-}
-
-/// The contacts of a step, in the order of buckets and pairs.
+/// The manifolds of all candidate pairs, in the order of buckets and slots.
 #[derive(Clone, Debug)]
 pub struct Manifolds<R: Real> {
-    /// Who touches whom.
-    pub keys: Vec<Key>,
-    /// First rows; see [`geometry`].
-    pub geometry: Column<R>,
-    /// Second rows; see [`surface`].
-    pub surface: Column<R>,
+    now: PairTable<R>,
+    before: PairTable<R>,
+    bucket_of: Vec<u8>,
+    /// Places of the pairs that touch, ascending.
+    touching: Vec<u32>,
+    /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
+    changed: bool,
 }
 
 impl<R: Real> Default for Manifolds<R> {
     fn default() -> Self {
-        Self { keys: Vec::new(), geometry: Column::new(R::ZERO), surface: Column::new(R::ZERO) }
+        Self {
+            now: PairTable::default(),
+            before: PairTable::default(),
+            bucket_of: Vec::new(),
+            touching: Vec::new(),
+            changed: false,
+        }
     }
 }
 
 impl<R: Real> Manifolds<R> {
-    /// Contacts.
-    pub fn len(&self) -> usize {
-        self.keys.len()
-    }
-    /// Nothing touches?
-    pub fn is_empty(&self) -> bool {
-        self.keys.is_empty()
-    }
-    /// Forgets all contacts, keeps the memory.
-    pub fn clear(&mut self) {
-        self.keys.clear();
+    /// Takes a new list of pairs; `bucket(pair)` names each one's bucket and puts its body A first. What pairs
+    /// of the last list keep is taken over.
+    pub fn deal(&mut self, pairs: &[[u32; 2]], bucket: impl Fn([u32; 2]) -> (usize, [u32; 2])) {
+        std::mem::swap(&mut self.now, &mut self.before);
+        self.bucket_of.clear();
+        let mut counts = [0; 6];
+        for &pair in pairs {
+            let (number, _) = bucket(pair);
+            self.bucket_of.push(number as u8);
+            counts[number] += 1;
+        }
+        self.before.make_room(pairs.len());
+        let table = &mut self.now;
+        table.resize(pairs.len());
+        let mut next = [0; 6];
+        for number in 1..6 {
+            next[number] = next[number - 1] + counts[number - 1];
+        }
+        for (&pair, &number) in pairs.iter().zip(&self.bucket_of) {
+            let (_, [a, b]) = bucket(pair);
+            let at = &mut next[number as usize];
+            (table.a[*at], table.b[*at]) = (a, b);
+            *at += 1;
+        }
+        table.ends = next;
+        for at in [pairs.len(), pairs.len() + 1] {
+            (table.a[at], table.b[at]) = (0, 0);
+            table.clear_place(at, R::ZERO);
+        }
+        self.take_over();
+        self.changed = true;
     }
 
-    /// Makes room for `more` contacts.
-    pub fn reserve(&mut self, more: usize) {
-        self.keys.reserve(more);
-        let rows = self.keys.len() + more;
-        if self.geometry.rows().len() < rows {
-            self.geometry.resize(rows * ROW * 2);
-            self.surface.resize(rows * ROW * 2);
+    fn take_over(&mut self) {
+        let (now, before) = (&mut self.now, &self.before);
+        for number in 0..6 {
+            let mut old = before.bucket(number).peekable();
+            for at in now.bucket(number) {
+                let order = now.order(at);
+                while old.next_if(|&old_at| before.order(old_at) < order).is_some() {}
+                match old.next_if(|&old_at| before.order(old_at) == order) {
+                    Some(old_at) => now.take_place(at, before, old_at),
+                    None => now.clear_place(at, R::from_f64(Code::UNKNOWN)),
+                }
+            }
         }
     }
 
-    /// Appends a contact; there must be room for it.
-    #[inline(always)]
-    pub fn push(&mut self, key: Key, geometry: [R; ROW], surface: [R; ROW]) {
-        let at = self.keys.len();
-        self.keys.push(key);
-        self.geometry.rows_mut()[at] = geometry;
-        self.surface.rows_mut()[at] = surface;
+    /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
+    pub fn forget(&mut self) {
+        self.now.ends = [0; 6];
+        self.now.resize(0);
+        for at in 0..2 {
+            self.now.clear_place(at, R::ZERO);
+        }
+        self.touching.clear();
+        self.changed = true;
     }
 
-    /// Appends a whole batch of contacts, rows given as lanes; there must be room for them.
+    /// Candidate pairs.
+    pub fn pairs(&self) -> usize {
+        self.now.ends[5]
+    }
+    /// A place that is no pair and holds zeros.
+    pub fn padding(&self) -> u32 {
+        self.pairs() as u32
+    }
+    /// A place that is no pair, for answers nobody reads.
+    pub fn spill(&self) -> u32 {
+        self.pairs() as u32 + 1
+    }
+    /// The places of a bucket's pairs.
+    pub fn bucket(&self, number: usize) -> std::ops::Range<usize> {
+        self.now.bucket(number)
+    }
+    /// Slots of bodies A and B of the pair at a place. A is the one of the lesser form (circle < box < polygon),
+    /// or the lower slot.
     #[inline(always)]
-    pub fn push_all<L: Lanes<Elem = R>>(
+    pub fn slots(&self, at: usize) -> [u32; 2] {
+        [self.now.a[at], self.now.b[at]]
+    }
+    /// Points and features of the pair at a place.
+    #[inline(always)]
+    pub fn code(&self, at: usize) -> Code {
+        Code::of(self.now.code[at])
+    }
+    /// Has the narrow phase ever looked at the pair?
+    #[inline(always)]
+    pub fn is_known(&self, at: usize) -> bool {
+        self.now.code[at] >= R::ZERO
+    }
+    /// Rows per place; see [`geometry`].
+    pub fn geometry(&self) -> &[[R; ROW]] {
+        self.now.geometry.rows()
+    }
+    /// Rows per place; see [`gap`].
+    pub fn gaps(&self) -> &[[R; 4]] {
+        self.now.gap.fours()
+    }
+    /// Rows per place; see [`gap`].
+    pub fn gaps_mut(&mut self) -> &mut [[R; 4]] {
+        self.now.gap.fours_mut()
+    }
+    /// Rows per place; see [`impulse`].
+    pub fn impulses(&self) -> &[[R; 4]] {
+        self.now.impulse.fours()
+    }
+    /// Rows per place; see [`impulse`].
+    pub fn impulses_mut(&mut self) -> &mut [[R; 4]] {
+        self.now.impulse.fours_mut()
+    }
+    /// Colour per place; see [`crate::solve::color`].
+    pub fn colors_mut(&mut self) -> &mut [u8] {
+        &mut self.now.color
+    }
+    /// Colour of a place.
+    pub fn color(&self, at: usize) -> u8 {
+        self.now.color[at]
+    }
+
+    /// Writes what the narrow phase found for `WIDTH` pairs: rows given as lanes, codes ≥ 0.
+    #[inline(always)]
+    pub fn write<L: Lanes<Elem = R>>(
         &mut self,
-        keys: impl Iterator<Item = Key>,
+        places: &[u32],
+        code: L,
         geometry: [L; ROW],
-        surface: [L; ROW],
+        gap: [L; 4],
+        scratch: &mut [[R; ROW]; 16],
     ) {
-        let at = self.keys.len();
-        self.keys.extend(keys);
-        L::store_rows(geometry, &mut self.geometry.rows_mut()[at..]);
-        L::store_rows(surface, &mut self.surface.rows_mut()[at..]);
+        L::store_rows(geometry, scratch);
+        L::scatter_fours(gap, self.now.gap.fours_mut(), places);
+        let (codes, rows) = (code.to_array(), self.now.geometry.rows_mut());
+        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
+            rows[place as usize] = scratch[lane];
+        }
+        for (&place, &fresh) in places[..L::WIDTH].iter().zip(&codes) {
+            self.set_code(place as usize, fresh);
+        }
     }
 
-    /// The contact at a position in the list.
-    pub fn contact(&self, at: usize) -> Contact {
-        let (key, row) = (self.keys[at], self.geometry.rows()[at]);
+    /// Notes that `WIDTH` pairs do not touch.
+    #[inline(always)]
+    pub fn write_apart(&mut self, places: &[u32]) {
+        for &place in places {
+            self.set_code(place as usize, R::ZERO);
+        }
+    }
+
+    #[inline(always)]
+    fn set_code(&mut self, place: usize, fresh: R) {
+        let old = std::mem::replace(&mut self.now.code[place], fresh);
+        // How often padding lanes write to the spill place depends on the width: nothing may follow from it.
+        if old != fresh && place < self.pairs() {
+            self.rematch(place, Code::of(old), Code::of(fresh));
+        }
+    }
+
+    /// A manifold has other points than before: impulses stay with their features, new points begin at 0.
+    #[inline(never)]
+    fn rematch(&mut self, place: usize, old: Code, fresh: Code) {
+        let before = self.now.impulse.fours()[place];
+        let mut row = [R::ZERO; 4];
+        for k in 0..fresh.points() {
+            for j in 0..old.points() {
+                if old.feature(j) == fresh.feature(k) {
+                    row[impulse::NORMAL + k] = before[impulse::NORMAL + j];
+                    row[impulse::TANGENT] = before[impulse::TANGENT];
+                }
+            }
+        }
+        self.now.impulse.fours_mut()[place] = row;
+        if fresh.points() == 0 {
+            self.now.color[place] = UNCOLORED;
+        }
+        self.changed |= old.points() != fresh.points();
+    }
+
+    /// Brings the list of touching pairs up to date. Says whether it, or a number of points, changed.
+    pub fn refresh(&mut self) -> bool {
+        let changed = std::mem::take(&mut self.changed);
+        if changed {
+            let one = R::from_f64(65536.0);
+            let codes = &self.now.code.as_slice()[..self.now.ends[5]];
+            self.touching.clear();
+            let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
+            self.touching.extend(places.map(|(at, _)| at as u32));
+        }
+        changed
+    }
+
+    /// Places of the pairs that touch, ascending.
+    pub fn touching(&self) -> &[u32] {
+        &self.touching
+    }
+    /// Pairs that touch.
+    pub fn len(&self) -> usize {
+        self.touching.len()
+    }
+    /// Nothing touches?
+    pub fn is_empty(&self) -> bool {
+        self.touching.is_empty()
+    }
+
+    /// The `k`-th touching pair's contact.
+    pub fn contact(&self, k: usize) -> Contact {
+        let at = self.touching[k] as usize;
+        let ([a, b], code) = (self.slots(at), self.code(at));
+        let (row, gap, push) = (self.geometry()[at], self.gaps()[at], self.impulses()[at]);
         let value = |k: usize| row[k].to_f64();
         let point = |k: usize| ContactPoint {
             arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
-            separation: value(geometry::SEPARATION + k),
-            feature: key.features[k],
+            separation: gap[gap::SEPARATION + k].to_f64(),
+            feature: code.feature(k),
+            impulse: push[impulse::NORMAL + k].to_f64(),
         };
-        let points = (0..key.points as usize).map(point).collect();
-        Contact { a: key.a, b: key.b, normal: [value(0), value(1)], points }
+        let points = (0..code.points()).map(point).collect();
+        let tangent_impulse = push[impulse::TANGENT].to_f64();
+        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let of = |t: &PairTable<R>| {
+            let columns = t.code.bytes() + t.geometry.bytes() + t.gap.bytes() + t.impulse.bytes();
+            columns + t.a.capacity() * 8 + t.color.capacity()
+        };
+        of(&self.now) + of(&self.before) + self.touching.capacity() * 4 + self.bucket_of.capacity()
     }
 }
 
@@ -227,6 +437,8 @@ pub struct Contact {
     pub normal: [f64; 2],
     /// One or two.
     pub points: Vec<ContactPoint>,
+    /// Friction, N·s per substep, along the normal turned a quarter counter-clockwise.
+    pub tangent_impulse: f64,
 }
 
 /// One point of a contact.
@@ -238,4 +450,6 @@ pub struct ContactPoint {
     pub separation: f64,
     /// Which features touch.
     pub feature: Feature,
+    /// Normal impulse, N·s per substep.
+    pub impulse: f64,
 }

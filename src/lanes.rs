@@ -191,6 +191,11 @@ pub trait Lanes:
     /// The inverse of [`Lanes::gather_rows`] over an array of rows: `to[lane][k] = from[k][lane]`,
     /// for the first `WIDTH` rows of `to`.
     fn store_rows(from: [Self; ROW], to: &mut [[Self::Elem; ROW]]);
+    /// Like [`Lanes::gather_rows`], for rows of four.
+    fn gather_fours(fours: &[[Self::Elem; 4]], index: &[u32]) -> [Self; 4];
+    /// The inverse of [`Lanes::gather_fours`]: `to[index[lane]][k] = from[k][lane]`; where lanes name the same
+    /// row, the last one's stays. Panics if an index is out of range.
+    fn scatter_fours(from: [Self; 4], to: &mut [[Self::Elem; 4]], index: &[u32]);
 
     /// 0 in every lane.
     #[inline(always)]
@@ -281,6 +286,14 @@ macro_rules! scalar_lanes {
             fn store_rows(from: [Self; ROW], to: &mut [[$t; ROW]]) {
                 to[0] = from;
             }
+            #[inline(always)]
+            fn gather_fours(fours: &[[$t; 4]], index: &[u32]) -> [Self; 4] {
+                fours[index[0] as usize]
+            }
+            #[inline(always)]
+            fn scatter_fours(from: [Self; 4], to: &mut [[$t; 4]], index: &[u32]) {
+                to[index[0] as usize] = from;
+            }
         }
     };
 }
@@ -314,7 +327,7 @@ macro_rules! least {
 }
 
 macro_rules! vector_lanes {
-    ($v:ty, $t:ty, $n:literal, $gather:ident, $scatter:ident) => {
+    ($v:ty, $t:ty, $n:literal, $gather:ident, $scatter:ident, $gather_fours:ident, $scatter_fours:ident) => {
         impl LaneMask for Mask<$v> {
             #[inline(always)]
             fn bits(self) -> u32 {
@@ -401,13 +414,21 @@ macro_rules! vector_lanes {
             fn store_rows(from: [Self; ROW], to: &mut [[$t; ROW]]) {
                 $scatter(from, to);
             }
+            #[inline(always)]
+            fn gather_fours(fours: &[[$t; 4]], index: &[u32]) -> [Self; 4] {
+                $gather_fours(fours, index)
+            }
+            #[inline(always)]
+            fn scatter_fours(from: [Self; 4], to: &mut [[$t; 4]], index: &[u32]) {
+                $scatter_fours(from, to, index);
+            }
         }
     };
 }
-vector_lanes!(f32x4, f32, 4, gather_f32x4, store_f32x4);
-vector_lanes!(f32x8, f32, 8, gather_f32x8, store_f32x8);
-vector_lanes!(f32x16, f32, 16, gather_f32x16, store_f32x16);
-vector_lanes!(f64x4, f64, 4, gather_f64x4, store_f64x4);
+vector_lanes!(f32x4, f32, 4, gather_f32x4, store_f32x4, gather_fours_f32x4, scatter_fours_f32x4);
+vector_lanes!(f32x8, f32, 8, gather_f32x8, store_f32x8, gather_fours_f32x8, scatter_fours_f32x8);
+vector_lanes!(f32x16, f32, 16, gather_f32x16, store_f32x16, gather_fours_f32x16, scatter_fours_f32x16);
+vector_lanes!(f64x4, f64, 4, gather_f64x4, store_f64x4, gather_fours_f64x4, scatter_fours_f64x4);
 
 /// The lanes of `f32` that users choose by number.
 pub mod f32s {
@@ -482,6 +503,88 @@ macro_rules! four_rows {
 }
 four_rows!(f32x4, f32, gather_f32x4, store_f32x4);
 four_rows!(f64x4, f64, gather_f64x4, store_f64x4);
+
+macro_rules! four_fours {
+    ($v:ty, $t:ty, $gather:ident, $scatter:ident) => {
+        #[inline(always)]
+        fn $gather(fours: &[[$t; 4]], index: &[u32]) -> [$v; 4] {
+            let i: &[u32; 4] = index[..4].try_into().unwrap_or_else(|_| unreachable!("a slice of four"));
+            let row = |lane: usize| <$v>::new(fours[i[lane] as usize]);
+            <$v>::transpose([row(0), row(1), row(2), row(3)])
+        }
+
+        #[inline(always)]
+        fn $scatter(from: [$v; 4], to: &mut [[$t; 4]], index: &[u32]) {
+            let i: &[u32; 4] = index[..4].try_into().unwrap_or_else(|_| unreachable!("a slice of four"));
+            let rows = <$v>::transpose(from);
+            to[i[0] as usize] = *rows[0].as_array();
+            to[i[1] as usize] = *rows[1].as_array();
+            to[i[2] as usize] = *rows[2].as_array();
+            to[i[3] as usize] = *rows[3].as_array();
+        }
+    };
+}
+four_fours!(f32x4, f32, gather_fours_f32x4, scatter_fours_f32x4);
+four_fours!(f64x4, f64, gather_fours_f64x4, scatter_fours_f64x4);
+
+/// Two 4×4 transposes side by side. Its own inverse.
+#[cfg(target_feature = "avx")]
+#[inline(always)]
+fn transpose_halves([a, b, c, d]: [f32x8; 4]) -> [f32x8; 4] {
+    use safe_arch::{m256, shuffle_m256, unpack_hi_m256, unpack_lo_m256};
+    let [a, b, c, d]: [m256; 4] = bytemuck::cast([a, b, c, d]);
+    let (low_ab, high_ab) = (unpack_lo_m256(a, b), unpack_hi_m256(a, b));
+    let (low_cd, high_cd) = (unpack_lo_m256(c, d), unpack_hi_m256(c, d));
+    bytemuck::cast([
+        shuffle_m256::<0b01_00_01_00>(low_ab, low_cd),
+        shuffle_m256::<0b11_10_11_10>(low_ab, low_cd),
+        shuffle_m256::<0b01_00_01_00>(high_ab, high_cd),
+        shuffle_m256::<0b11_10_11_10>(high_ab, high_cd),
+    ])
+}
+
+#[cfg(not(target_feature = "avx"))]
+#[inline(always)]
+fn transpose_halves(rows: [f32x8; 4]) -> [f32x8; 4] {
+    let halves: [[f32x4; 2]; 4] = rows.map(bytemuck::cast);
+    let low = f32x4::transpose(halves.map(|h| h[0]));
+    let high = f32x4::transpose(halves.map(|h| h[1]));
+    bytemuck::cast([[low[0], high[0]], [low[1], high[1]], [low[2], high[2]], [low[3], high[3]]])
+}
+
+#[inline(always)]
+fn gather_fours_f32x8(fours: &[[f32; 4]], index: &[u32]) -> [f32x8; 4] {
+    let i: &[u32; 8] = index[..8].try_into().unwrap_or_else(|_| unreachable!("a slice of eight"));
+    let row = |lane: usize| f32x4::new(fours[i[lane] as usize]);
+    let pair = |low: usize, high: usize| bytemuck::cast::<[f32x4; 2], f32x8>([row(low), row(high)]);
+    transpose_halves([pair(0, 4), pair(1, 5), pair(2, 6), pair(3, 7)])
+}
+
+#[inline(always)]
+fn scatter_fours_f32x8(from: [f32x8; 4], to: &mut [[f32; 4]], index: &[u32]) {
+    let i: &[u32; 8] = index[..8].try_into().unwrap_or_else(|_| unreachable!("a slice of eight"));
+    let rows: [[[f32; 4]; 2]; 4] = bytemuck::cast(transpose_halves(from));
+    for half in 0..2 {
+        for (lane, row) in rows.iter().enumerate() {
+            to[i[4 * half + lane] as usize] = row[half];
+        }
+    }
+}
+
+#[inline(always)]
+fn gather_fours_f32x16(fours: &[[f32; 4]], index: &[u32]) -> [f32x16; 4] {
+    let [a, b, c, d] = gather_fours_f32x8(fours, &index[..8]);
+    let [e, f, g, h] = gather_fours_f32x8(fours, &index[8..16]);
+    let join = |low: f32x8, high: f32x8| bytemuck::cast([low, high]);
+    [join(a, e), join(b, f), join(c, g), join(d, h)]
+}
+
+#[inline(always)]
+fn scatter_fours_f32x16(from: [f32x16; 4], to: &mut [[f32; 4]], index: &[u32]) {
+    let halves: [[f32x8; 2]; 4] = from.map(bytemuck::cast);
+    scatter_fours_f32x8(halves.map(|h| h[0]), to, &index[..8]);
+    scatter_fours_f32x8(halves.map(|h| h[1]), to, &index[8..16]);
+}
 
 /// The set bits of `bits`, lowest first: which lanes a kernel must hand on.
 #[inline(always)]

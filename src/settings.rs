@@ -75,8 +75,10 @@ named_enum! {
     Solver, "solver",
     /// The thesis's method, cleaned: one pass, positional correction.
     Impulse = "impulse",
-    /// Sequential impulses with warm start: the default.
+    /// Sequential impulses with warm start and Baumgarte bias.
     Pgs = "pgs",
+    /// Substepped soft contacts: the default.
+    Soft = "soft",
 }
 
 named_enum! {
@@ -113,7 +115,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// Work that is left out when a scene does not need it. All of them give the same bits on or off.
+    /// Work that is left out when a scene does not need it. All but `manifold_reuse` give the same bits on or off.
     Skip, "skip",
     /// Under constant force every integrator of order ≥ 2 collapses to x + hv + ½h²a, v + ha.
     ClosedForm = "closed_form",
@@ -127,6 +129,8 @@ named_enum! {
     Restitution = "restitution",
     /// A list of candidate pairs is found with a skin and serves until a body has moved half of it.
     PairList = "pair_list",
+    /// A pair whose bodies have hardly moved keeps its manifold; see [`crate::integrate::STIR`] for the bound.
+    ManifoldReuse = "manifold_reuse",
 }
 
 /// A set of [`Skip`]s.
@@ -136,6 +140,8 @@ pub struct Skips(u32);
 impl Skips {
     /// All of them: the default.
     pub const ALL: Self = Self((1 << Skip::ALL.len()) - 1);
+    /// Those that change no bit of a result.
+    pub const EXACT: Self = Self::ALL.without(Skip::ManifoldReuse);
     /// None: every stage does all its work.
     pub const NONE: Self = Self(0);
 
@@ -157,11 +163,12 @@ impl Skips {
 
 impl std::str::FromStr for Skips {
     type Err = UnknownName;
-    /// `all`, `none`, or names separated by commas.
+    /// `all`, `none`, `exact` (all that change no bit), or names separated by commas.
     fn from_str(given: &str) -> Result<Self, UnknownName> {
         match given {
             "all" => Ok(Self::ALL),
             "none" => Ok(Self::NONE),
+            "exact" => Ok(Self::EXACT),
             list => list.split(',').try_fold(Self::NONE, |set, name| Ok(set.with(name.trim().parse()?))),
         }
     }
@@ -172,6 +179,7 @@ impl std::fmt::Display for Skips {
         match *self {
             Self::ALL => f.write_str("all"),
             Self::NONE => f.write_str("none"),
+            Self::EXACT => f.write_str("exact"),
             some => {
                 let names: Vec<_> = Skip::ALL.iter().filter(|s| some.has(**s)).map(|s| s.name()).collect();
                 f.write_str(&names.join(","))
@@ -231,9 +239,9 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             dt_secs: 1.0 / 60.0,
-            integrator: Integrator::SemiImplicitEuler,
-            solver: Solver::Pgs,
-            substeps: 1,
+            integrator: Integrator::VelocityVerlet,
+            solver: Solver::Soft,
+            substeps: 4,
             broad: Broad::Auto,
             lanes: 8,
             precision: Precision::F32,

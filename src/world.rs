@@ -4,16 +4,15 @@ use std::time::Instant;
 
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::broad::BroadPhase;
-use crate::contact::{Contact, Impulses, Manifolds};
+use crate::contact::{Contact, Manifolds};
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
-use crate::narrow::Narrow;
+use crate::narrow::{Narrow, Stirred};
 use crate::scene::{BodySpec, Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
-use crate::solve::color::Coloring;
-use crate::solve::{self, Traits};
+use crate::solve::{self, Solving, Task, Traits};
 
 /// A step that could not be taken to its end.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -64,12 +63,14 @@ pub struct World<L: Lanes> {
     settings: Settings,
     fields: Vec<Field<L::Elem>>,
     traits: Traits,
-    inspected: Option<u64>,
+    /// Revision and removals of the bodies last looked over.
+    inspected: Option<(u64, u64)>,
     broad: BroadPhase<L::Elem>,
     narrow: Narrow<L::Elem>,
-    coloring: Coloring,
-    impulses: Impulses<L::Elem>,
+    solving: Solving<L>,
     motion: Motion<L::Elem>,
+    /// Poses may have changed by other hands than a step's: no manifold may be reused.
+    disturbed: bool,
     steps: u64,
     counts: Counts,
     times: StageTimes,
@@ -100,13 +101,13 @@ impl<L: Lanes> World<L> {
             forces,
             settings,
             fields: Vec::new(),
-            traits: Traits { friction: false, restitution: false },
+            traits: Traits::default(),
             inspected: None,
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
-            coloring: Coloring::default(),
-            impulses: Impulses::default(),
+            solving: Solving::default(),
             motion: Motion::default(),
+            disturbed: true,
             steps: 0,
             counts: Counts::default(),
             times: StageTimes::default(),
@@ -140,56 +141,73 @@ impl<L: Lanes> World<L> {
         let mut clock = Instant::now();
         let mut lap = |times: &mut StageTimes, stage| times.lap(stage, &mut clock);
         let Settings { solver, substeps, skips, .. } = self.settings;
-        let margin = solve::margin(solver);
+        let traits = self.traits.needed(skips);
+        let margin = traits.margin(solver);
 
         let keep = skips.has(Skip::PairList);
         let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, keep);
         lap(&mut self.times, Stage::Broad);
 
-        self.bodies.refresh_polygons();
         if !found.kept {
             self.narrow.deal(&self.bodies, self.broad.pairs());
         }
-        self.narrow.collide::<L>(&self.bodies, margin);
+        let reuse = skips.has(Skip::ManifoldReuse) && !std::mem::take(&mut self.disturbed);
+        let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
+        let looked_at = self.narrow.choose(stirred);
+        if looked_at > 0 {
+            self.bodies.refresh_polygons();
+            self.narrow.collide::<L>(&self.bodies, margin);
+        }
+        let changed = self.narrow.manifolds.refresh();
         lap(&mut self.times, Stage::Narrow);
 
-        let manifolds = &self.narrow.manifolds;
+        let (fields, moving) = (&self.fields[..], solve::pushes(solver));
         let h_secs = dt_secs / f64::from(substeps);
-        let plan =
-            Plan { integrator: self.settings.integrator, fields: &self.fields, h_secs, substeps, skips };
-        let free_flight = manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let plan = Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving };
+        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         if free_flight {
-            self.impulses.forget();
+            self.disturbed = true;
             skipped = integrate::fly::<L>(&plan, &mut self.bodies);
             lap(&mut self.times, Stage::Integrate);
         } else {
-            let same = solve::carries_impulses(solver) && self.impulses.carry(manifolds);
-            if !same || manifolds.is_empty() {
-                // The very same contacts keep their colours and batches.
-                self.coloring.run(&self.bodies, manifolds);
-                self.coloring.cut::<L>(manifolds);
-            }
+            let task = Task { solver, traits, dt_secs, plan: &plan };
+            let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
+            solving.prepare(bodies, &mut self.narrow, changed, motion);
+            solving.begin(&task, bodies, motion);
             lap(&mut self.times, Stage::Prepare);
-            let needed = self.traits.needed(skips);
-            for _ in 0..substeps {
-                skipped = integrate::predict::<L>(&plan, &self.bodies, &mut self.motion);
+            for substep in 0..substeps {
+                let first = substep == 0;
+                skipped = integrate::predict::<L>(&plan, bodies, motion, first);
                 lap(&mut self.times, Stage::Integrate);
-                let (coloring, rows) = (&self.coloring, &mut self.motion.rows);
-                solve::solve::<L>(solver, needed, h_secs, manifolds, &mut self.impulses, coloring, rows);
+                solving.solve(&task, motion, first);
                 lap(&mut self.times, Stage::Solve);
-                finite = integrate::correct::<L>(h_secs, &mut self.bodies, &mut self.motion);
+                finite = integrate::advance::<L>(&plan, bodies, motion);
                 lap(&mut self.times, Stage::Integrate);
                 if !finite {
                     // The next round's prediction would hide whether the solver began it.
                     break;
                 }
+                solving.settle(&task, motion);
+                lap(&mut self.times, Stage::Solve);
             }
-            integrate::finish::<L>(&mut self.bodies, &mut self.motion);
+            solving.end(&task, &mut self.narrow.manifolds, motion);
+            lap(&mut self.times, Stage::Solve);
+            integrate::finish::<L>(&mut self.bodies, motion);
             lap(&mut self.times, Stage::Integrate);
         }
 
-        self.counts = Counts::of(found, manifolds, free_flight, skipped, &self.bodies, self.traits, skips);
+        let reused = self.narrow.manifolds.pairs() - looked_at;
+        self.counts = Counts::of(
+            found,
+            reused,
+            &self.narrow.manifolds,
+            free_flight,
+            skipped,
+            &self.bodies,
+            self.traits,
+            skips,
+        );
         self.times.steps += 1;
         self.check_finite(finite)?;
         lap(&mut self.times, Stage::Measure);
@@ -198,21 +216,29 @@ impl<L: Lanes> World<L> {
 
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.
     fn inspect(&mut self) {
-        if self.inspected == Some(self.bodies.revision()) {
+        let seen = (self.bodies.revision(), self.bodies.removals());
+        if self.inspected == Some(seen) {
             return;
         }
-        self.inspected = Some(self.bodies.revision());
+        if self.inspected.is_none_or(|(_, removals)| removals != seen.1) {
+            self.narrow.manifolds.forget();
+            self.motion.forget_drift();
+        }
+        self.inspected = Some(seen);
         self.fields = self.forces.fields();
         if self.bodies.force.is_some() {
             self.fields.insert(0, Field::PerBody);
         }
         let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
+        let [gx, gy] = self.forces.gravity.unwrap_or_default();
         self.traits = Traits {
             friction: some(self.bodies.friction.as_slice()),
             restitution: some(self.bodies.restitution.as_slice()),
+            length: self.broad.look_over(&self.bodies),
+            gravity: gx.hypot(gy),
         };
-        self.motion.resize(self.bodies.len());
-        self.impulses.forget();
+        self.motion.resize(&self.bodies);
+        self.disturbed = true;
     }
 
     /// `rounds_finite`: no round of integrating and solving broke off.
@@ -222,7 +248,9 @@ impl<L: Lanes> World<L> {
             Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
         };
         if rounds_finite {
-            return stopped(slot, column, value, Stage::Integrate);
+            // Poses overflow where they are added up, or by what a solver moved bodies apart by.
+            let solved = self.motion.moved.padded().iter().any(|moved| !moved.is_finite());
+            return stopped(slot, column, value, if solved { Stage::Solve } else { Stage::Integrate });
         }
         // A contact spreads what is not finite: it began where already the prediction was not.
         let origin = self.bodies.slots().find(|&slot| !self.motion.predicted_finite(slot));
@@ -262,6 +290,7 @@ impl<L: Lanes> World<L> {
     }
     /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`].
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
+        self.disturbed = true;
         &mut self.bodies
     }
     /// The fields.
@@ -279,6 +308,10 @@ impl<L: Lanes> World<L> {
     /// Those contacts, spelled out.
     pub fn contacts(&self) -> Vec<Contact> {
         (0..self.manifolds().len()).map(|k| self.manifolds().contact(k)).collect()
+    }
+    /// Colours and constraints of the last step.
+    pub fn solving(&self) -> &Solving<L> {
+        &self.solving
     }
     /// Steps taken.
     pub fn steps(&self) -> u64 {

@@ -146,6 +146,18 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
+    /// Sorts bodies into long and plain ones if they have changed; returns the median bounding radius of those
+    /// that move, metres, 0 where none does.
+    pub fn look_over(&mut self, bodies: &Bodies<R>) -> f64 {
+        if self.revision != Some(bodies.revision()) {
+            self.long.classify(bodies);
+            self.revision = Some(bodies.revision());
+            self.keep.forget();
+        }
+        let median = self.long.median_radius();
+        if median.is_finite() { median } else { 0.0 }
+    }
+
     /// Finds all pairs closer than `margin` metres by their bounds; with `keep` a list may be found with a
     /// skin and serve for several steps.
     pub fn find<L: Lanes<Elem = R>>(
@@ -155,11 +167,7 @@ impl<R: Real> BroadPhase<R> {
         margin: R,
         keep: bool,
     ) -> BroadCounts {
-        if self.revision != Some(bodies.revision()) {
-            self.long.classify(bodies);
-            self.revision = Some(bodies.revision());
-            self.keep.forget();
-        }
+        self.look_over(bodies);
         let method = Self::resolve(method, bodies.live());
         let keep = keep && method != Broad::Off;
         if keep && self.keep.holds::<L>(bodies) {

@@ -4,16 +4,16 @@
 //! touched inside a step: displacements are summed in the `moved` columns and added once at its end,
 //! which is what keeps precision far from the origin.
 //!
-//! Next to contacts, a body advances by the scheme's displacement plus h·(`v_solved` − `v_free`): where
-//! no contact changed its velocity the difference is exactly zero, so a body that touches nothing moves
-//! as if there were no solver, to the bit.
+//! Next to contacts, a substep moves a body by the scheme's displacement plus h times what contacts changed its
+//! moving velocity by (see [`crate::solve::soft`]): where no contact acts the difference is exactly zero, so a
+//! body that touches nothing moves as if there were no solver, to the bit.
 //!
 //! | pass | reads | writes |
 //! |---|---|---|
 //! | [`fly`] (no contact in the world) | x v θ, fields | x v θ |
-//! | [`predict`] (per substep) | x v moved, fields | solver rows, `v_free`, displacement |
-//! | [`correct`] (per substep) | solver rows, `v_free`, displacement | v, moved |
-//! | [`finish`] (per step) | moved | x, attitude |
+//! | [`predict`] (per substep) | x v moved, fields, rows | rows, free velocity, displacement |
+//! | [`advance`] (per substep) | rows, free velocity, displacement | rows, displacement rows |
+//! | [`finish`] (per step) | rows, displacements | v, x, attitude, drift |
 //!
 //! Drag, springs and the other fields act at the centroid: attitude follows from constant torque alone.
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
@@ -28,7 +28,7 @@ mod yoshida4;
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::force::{Field, Matter, acceleration};
-use crate::lanes::{LaneMask, Lanes, ROW, Real};
+use crate::lanes::{LaneMask, Lanes, Real};
 use crate::settings::{Integrator, Skip, Skips};
 use crate::vec2::{Rot, Vec2};
 
@@ -117,38 +117,113 @@ fn drift<L: Lanes>(step: Step<L>, v: &Block<L>, a: &Block<L>) -> Block<L> {
 /// Columns of a step in progress: what bodies moved so far, and one substep's prediction.
 #[derive(Clone, Debug)]
 pub struct Motion<R: Real> {
-    /// Displacement since the step began: x, y (metres), angle (rad).
-    pub moved: [Column<R>; 3],
+    /// Displacement since the step began, the last substep's left out: x, y (metres), angle (rad).
+    total: [Column<R>; 3],
     /// Velocity after the scheme, before contacts: x, y, angular.
     free: [Column<R>; 3],
     /// The scheme's displacement in this substep: x, y, angle.
     ahead: [Column<R>; 3],
-    /// Per body [`vx`, `vy`, `w`, 1/m, 1/I, moved x, moved y, moved angle]: what a solver gathers and scatters.
-    pub rows: Column<R>,
+    /// Rows of four per slot, what a solver gathers and scatters: vx, vy, ω, 1/m; before the first substep what
+    /// the warm start adds to velocities; during a push the moving velocity.
+    pub velocity: Column<R>,
+    /// Rows of four per slot: the last substep's displacement x, y, angle, –.
+    pub moved: Column<R>,
+    /// Rows of four per slot: 1/m, 1/I, –, –.
+    pub matter: Column<R>,
+    /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
+    pub acceleration: Column<R>,
+    /// Path since the body last stirred, turning counted at the bounding radius, metres.
+    drift: Column<R>,
+    /// Slots of bodies whose manifolds are to be found anew.
+    pub stirred: Vec<bool>,
 }
 
 impl<R: Real> Default for Motion<R> {
     fn default() -> Self {
-        let three = || std::array::from_fn(|_| Column::new(R::ZERO));
-        Self { moved: three(), free: three(), ahead: three(), rows: Column::new(R::ZERO) }
+        let zeros = || Column::new(R::ZERO);
+        let three = || std::array::from_fn(|_| zeros());
+        Self {
+            total: three(),
+            free: three(),
+            ahead: three(),
+            velocity: zeros(),
+            moved: zeros(),
+            matter: zeros(),
+            acceleration: zeros(),
+            drift: zeros(),
+            stirred: Vec::new(),
+        }
     }
 }
 
 impl<R: Real> Motion<R> {
-    /// Makes room for `len` bodies; allocates only when the world grows.
-    pub fn resize(&mut self, len: usize) {
-        for column in self.moved.iter_mut().chain(&mut self.free).chain(&mut self.ahead) {
+    /// Makes room for the bodies and notes their masses; allocates only when the world grows.
+    pub fn resize(&mut self, bodies: &Bodies<R>) {
+        let len = bodies.len();
+        for column in self.total.iter_mut().chain(&mut self.free).chain(&mut self.ahead) {
             column.resize(len);
         }
+        self.drift.resize(len);
         // A row for every lane of the last block, padding included.
-        self.rows.resize(len.next_multiple_of(PAD) * ROW);
+        let padded = len.next_multiple_of(PAD);
+        for rows in [&mut self.velocity, &mut self.moved, &mut self.matter, &mut self.acceleration] {
+            rows.resize(padded * 4);
+        }
+        self.stirred.resize(padded, false);
+        for (slot, row) in self.matter.fours_mut()[..len].iter_mut().enumerate() {
+            *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
+        }
+    }
+
+    /// All bodies begin to drift anew.
+    pub fn forget_drift(&mut self) {
+        self.drift.padded_mut().fill(R::ZERO);
     }
 
     /// Was what the scheme predicted for a slot, before contacts, finite: where a non-finite state began.
     pub fn predicted_finite(&self, slot: usize) -> bool {
         self.free.iter().chain(&self.ahead).all(|column| column[slot].is_finite())
     }
+
+    /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
+    pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
+        for at in block_starts::<L>(bodies.len()) {
+            let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
+            let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
+            let w = block::<L>(&bodies.w, at);
+            let matter = matter(bodies, at);
+            let pull = acceleration(plan.fields, matter, &x, &v);
+            let alpha = angular_acceleration::<L>(bodies, at);
+            for i in 0..BLOCK {
+                let spin = alpha.map_or(L::zero(), |a| a[i]);
+                store_four::<L>(&mut self.velocity, at + i, [v[i].x, v[i].y, w[i], matter.inv_mass[i]]);
+                store_four::<L>(&mut self.acceleration, at + i, [pull[i].x, pull[i].y, spin, L::zero()]);
+            }
+        }
+    }
+
+    /// Rows of no velocity: what a warm start sums into.
+    pub fn clear_rows(&mut self) {
+        for (row, matter) in self.velocity.fours_mut().iter_mut().zip(self.matter.fours()) {
+            *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
+        }
+    }
 }
+
+/// `WIDTH` consecutive rows of four, transposed.
+#[inline(always)]
+fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
+    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
+}
+
+/// The inverse of [`load_four`].
+#[inline(always)]
+fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
+    L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
+}
+
+/// 0, 1, 2, …: gathers of neighbouring rows.
+const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// What the passes of this module left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -172,9 +247,18 @@ pub struct Plan<'a, R> {
     pub substeps: u32,
     /// Work that may be left out.
     pub skips: Skips,
+    /// Do the solver's rows hold the moving velocity u = displacement/h (else the velocity)?
+    pub moving: bool,
 }
 
 impl<R: Real> Plan<'_, R> {
+    /// What an impulse changes the moving velocity by, over what it changes the velocity by: a half where a
+    /// scheme moves by the mean of old and new velocity, 1 where by the new one.
+    pub fn impulse_share(&self) -> f64 {
+        let by_new = matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
+        if by_new || !self.moving { 1.0 } else { 0.5 }
+    }
+
     /// Does the scheme collapse to its closed form?
     pub fn collapses(&self) -> bool {
         let staged = !matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
@@ -207,13 +291,15 @@ pub fn fly<L: Lanes>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L::Elem>) -> 
     skipped
 }
 
-/// One substep's prediction: velocities and displacements as if nothing touched, and the solver's rows.
+/// One substep's prediction: velocities and displacements as if nothing touched, and the solver's rows with
+/// the warm start applied. `first`: the step begins, and the rows hold what the warm start adds.
 pub fn predict<L: Lanes>(
     plan: &Plan<'_, L::Elem>,
     bodies: &Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
+    first: bool,
 ) -> Skipped {
-    with_scheme!(plan, predict_with(plan, bodies, motion));
+    with_scheme!(plan, predict_with(plan, bodies, motion, first));
     Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, rotation: 0 }
 }
 
@@ -293,78 +379,114 @@ fn predict_with<L: Lanes, S: Scheme>(
     plan: &Plan<'_, L::Elem>,
     bodies: &Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
+    first: bool,
 ) {
     let step = Step::new(plan.h_secs);
-    for at in block_starts::<L>(bodies.len()) {
-        let moved = vectors::<L>(block(&motion.moved[0], at), block(&motion.moved[1], at));
-        let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
-        let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
-        let here = std::array::from_fn(|i| x[i] + moved[i]);
-        let matter = matter(bodies, at);
-        let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
-        let w = *block::<L>(&bodies.w, at);
-        let alpha = angular_acceleration::<L>(bodies, at);
-        let spin: [(L, L); BLOCK] =
-            std::array::from_fn(|i| S::spin(step, w[i], alpha.map_or(L::zero(), |a| a[i])));
-        let [free_x, free_y, free_w] = &mut motion.free;
-        store_block(free_x, free_y, at, &next.velocity);
-        free_w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&spin.map(|s| s.1));
-        let [ahead_x, ahead_y, ahead_w] = &mut motion.ahead;
-        store_block(ahead_x, ahead_y, at, &next.displacement);
-        ahead_w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&spin.map(|s| s.0));
-        let (inv_mass, inv_inertia) = (matter.inv_mass, block::<L>(&bodies.inv_inertia, at));
-        let turned = *block::<L>(&motion.moved[2], at);
+    let per_h = L::lit(1.0 / plan.h_secs);
+    let share = L::lit(plan.impulse_share());
+    for start in block_starts::<L>(bodies.len()) {
+        let mut state = [[L::zero(); 3]; BLOCK];
+        let mut warm = [[L::zero(); 3]; BLOCK];
+        let mut total = [[L::zero(); 3]; BLOCK];
         for i in 0..BLOCK {
-            let row = [
-                next.velocity[i].x,
-                next.velocity[i].y,
-                spin[i].1,
-                inv_mass[i],
-                inv_inertia[i],
-                moved[i].x,
-                moved[i].y,
-                turned[i],
-            ];
-            L::store_rows(row, &mut motion.rows.rows_mut()[(at + i) * L::WIDTH..]);
+            let at = start + i;
+            let [px, py, pw, _] = load_four::<L>(&motion.velocity, at);
+            if first {
+                warm[i] = [px, py, pw];
+                state[i] = [&bodies.vx, &bodies.vy, &bodies.w].map(|column| column.lanes::<L>()[at]);
+            } else {
+                state[i] = [px, py, pw];
+                let free = motion.free.each_ref().map(|column| column.lanes::<L>()[at]);
+                warm[i] = std::array::from_fn(|k| state[i][k] - free[k]);
+                let last = load_four::<L>(&motion.moved, at);
+                total[i] = std::array::from_fn(|k| motion.total[k].lanes::<L>()[at] + last[k]);
+            }
+        }
+        let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
+        let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
+        let v = state.map(|[x, y, _]| Vec2::new(x, y));
+        let matter = matter(bodies, start);
+        let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
+        let alpha = angular_acceleration::<L>(bodies, start);
+        for i in 0..BLOCK {
+            let at = start + i;
+            let (turn, spin) = S::spin(step, state[i][2], alpha.map_or(L::zero(), |a| a[i]));
+            let free = [next.velocity[i].x, next.velocity[i].y, spin];
+            let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
+            let row: [L; 3] = std::array::from_fn(|k| {
+                motion.free[k].lanes_mut::<L>()[at] = free[k];
+                motion.ahead[k].lanes_mut::<L>()[at] = ahead[k];
+                motion.total[k].lanes_mut::<L>()[at] = total[i][k];
+                let base = if plan.moving { ahead[k] * per_h } else { free[k] };
+                base + warm[i][k] * share
+            });
+            store_four::<L>(&mut motion.velocity, at, [row[0], row[1], row[2], matter.inv_mass[i]]);
         }
     }
 }
 
-/// After the solver: velocities back into their columns, displacements summed. Are all of them finite?
+/// After contacts: displacements of the substep, and the rows hold velocities again. Are all of them finite?
 #[must_use]
-pub fn correct<L: Lanes>(h_secs: f64, bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>) -> bool {
-    let h = Step::<L>::new(h_secs).h;
+pub fn advance<L: Lanes>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &Bodies<L::Elem>,
+    motion: &mut Motion<L::Elem>,
+) -> bool {
+    let (h, per_h) = (Step::<L>::new(plan.h_secs).h, L::lit(1.0 / plan.h_secs));
+    let per_share = L::lit(1.0 / plan.impulse_share());
     let mut doubtful = L::zero();
-    let index: [u32; 16] = std::array::from_fn(|k| k as u32);
     for at in block_starts::<L>(bodies.len()).flat_map(|start| start..start + BLOCK) {
-        let rows = &motion.rows.rows()[at * L::WIDTH..];
-        let [vx, vy, w, _, _, moved_x, moved_y, turned] = L::gather_rows(rows, &index);
-        for (k, (solved, moved)) in [(vx, moved_x), (vy, moved_y), (w, turned)].into_iter().enumerate() {
-            let change = solved - motion.free[k].lanes::<L>()[at];
-            let ahead = motion.ahead[k].lanes::<L>()[at];
-            let moved = moved + (ahead + h * change);
-            motion.moved[k].lanes_mut::<L>()[at] = moved;
+        let row = load_four::<L>(&motion.velocity, at);
+        let mut velocity = row;
+        let mut moved = [L::zero(); 4];
+        for k in 0..3 {
+            let (free, ahead) = (motion.free[k].lanes::<L>()[at], motion.ahead[k].lanes::<L>()[at]);
+            let base = if plan.moving { ahead * per_h } else { free };
+            let change = row[k] - base;
+            velocity[k] = free + change * per_share;
+            moved[k] = ahead + h * change;
             // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
-            doubtful = doubtful + moved * L::zero();
+            doubtful = doubtful + moved[k] * L::zero();
         }
-        bodies.vx.lanes_mut::<L>()[at] = vx;
-        bodies.vy.lanes_mut::<L>()[at] = vy;
-        bodies.w.lanes_mut::<L>()[at] = w;
+        store_four::<L>(&mut motion.velocity, at, velocity);
+        store_four::<L>(&mut motion.moved, at, moved);
     }
     !(!doubtful.equals(L::zero())).any()
 }
 
-/// Ends a step: what was moved is added to the poses and set back to zero.
+/// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
+/// errs by half the square of this at most, times the radius.
+pub const STIR: f64 = 4e-3;
+
+/// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
+/// have gone further than [`STIR`] of their radius since they last did are noted as stirred.
 pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>) {
-    for at in block_starts::<L>(bodies.len()) {
-        let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
-        let moved = vectors::<L>(block(&motion.moved[0], at), block(&motion.moved[1], at));
-        store_block(&mut bodies.x, &mut bodies.y, at, &std::array::from_fn(|i| x[i] + moved[i]));
-        let angle = *block::<L>(&motion.moved[2], at);
-        turn_block(bodies, at, &angle);
-        for column in &mut motion.moved {
-            column.lanes_mut::<L>()[at..at + BLOCK].fill(L::zero());
+    let bound = L::lit(STIR);
+    for start in block_starts::<L>(bodies.len()) {
+        let mut angle = [L::zero(); BLOCK];
+        for i in 0..BLOCK {
+            let at = start + i;
+            let [vx, vy, w, _] = load_four::<L>(&motion.velocity, at);
+            let last = load_four::<L>(&motion.moved, at);
+            let moved: [L; 3] = std::array::from_fn(|k| motion.total[k].lanes::<L>()[at] + last[k]);
+            for (column, value) in [(&mut bodies.vx, vx), (&mut bodies.vy, vy), (&mut bodies.w, w)] {
+                column.lanes_mut::<L>()[at] = value;
+            }
+            for (column, step) in [(&mut bodies.x, moved[0]), (&mut bodies.y, moved[1])] {
+                column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
+            }
+            angle[i] = moved[2];
+            let radius = bodies.radius.lanes::<L>()[at];
+            let path = (moved[0].abs() + moved[1].abs()) + radius * moved[2].abs();
+            let drift = motion.drift.lanes::<L>()[at] + path;
+            let stirs = (bound * radius).lt(drift);
+            motion.drift.lanes_mut::<L>()[at] = L::select(stirs, L::zero(), drift);
+            let bits = stirs.bits();
+            for (lane, stirred) in motion.stirred[at * L::WIDTH..(at + 1) * L::WIDTH].iter_mut().enumerate() {
+                *stirred = bits >> lane & 1 == 1;
+            }
         }
+        turn_block(bodies, start, &angle);
     }
 }
 

@@ -5,6 +5,8 @@
 //! The last batch of a bucket is padded with the world against itself and its answer masked away.
 //! Which pairs share a batch never changes an answer: loops that run to the batch's largest vertex
 //! count meet only repeated vertices beyond a lane's own.
+//!
+//! A pair is looked at when it is new or one of its bodies has stirred ([`Stirred`]); else it keeps its manifold.
 
 mod box_box;
 mod circle_box;
@@ -16,8 +18,8 @@ mod polygon_polygon;
 use crate::body::{Bodies, Form};
 
 use crate::column::{Column, PAD};
-use crate::contact::{Key, Manifolds};
-use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
+use crate::contact::{Code, Manifolds};
+use crate::lanes::{LaneMask, Lanes, ROW, Real};
 use crate::vec2::{Rot, Vec2};
 
 use polygon_polygon::Hull;
@@ -93,15 +95,23 @@ fn bucket_of(a: Form, b: Form) -> usize {
     a as usize + b as usize + usize::from(a != Form::Circle)
 }
 
-/// Pose rows, buckets and the manifolds found; memory is kept from step to step.
+/// Which bodies have moved more than a little since their manifolds were found.
+#[derive(Clone, Copy, Debug)]
+pub enum Stirred<'a> {
+    /// All of them: every pair is looked at.
+    All,
+    /// Those whose slots hold `true`.
+    These(&'a [bool]),
+}
+
+/// Pose rows, the pairs to look at and the manifolds found; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Narrow<R: Real> {
     poses: Column<R>,
-    buckets: [Bucket; 6],
-    /// Rows and feature ids of one batch, lane by lane.
-    scratch: [[[R; ROW]; 16]; 2],
-    features: [[R; 16]; 2],
-    /// The contacts of the last [`Narrow::run`].
+    todo: [Todo; 6],
+    /// Rows of one batch, lane by lane.
+    scratch: [[R; ROW]; 16],
+    /// The manifolds of all pairs.
     pub manifolds: Manifolds<R>,
 }
 
@@ -109,9 +119,8 @@ impl<R: Real> Default for Narrow<R> {
     fn default() -> Self {
         Self {
             poses: Column::new(R::ZERO),
-            buckets: Default::default(),
-            scratch: [[[R::ZERO; ROW]; 16]; 2],
-            features: [[R::ZERO; 16]; 2],
+            todo: Default::default(),
+            scratch: [[R::ZERO; ROW]; 16],
             manifolds: Manifolds::default(),
         }
     }
@@ -123,67 +132,77 @@ impl<R: Real> Narrow<R> {
     /// Reads poses and shapes; polygons' world rows must be fresh ([`Bodies::refresh_polygons`]).
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.deal(bodies, pairs);
+        self.choose(Stirred::All);
         self.collide::<L>(bodies, margin);
+        self.manifolds.refresh();
     }
 
-    /// Deals pairs into buckets; they serve until the list of pairs changes.
+    /// Takes a new list of pairs; it serves until the next.
     pub fn deal(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
-        for bucket in &mut self.buckets {
-            bucket.clear();
-        }
-        for &[a, b] in pairs {
+        self.manifolds.deal(pairs, |[a, b]| {
             let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
-            let pair = if form_a <= form_b { [a, b] } else { [b, a] };
-            self.buckets[bucket_of(form_a.min(form_b), form_a.max(form_b))].push(pair);
-        }
-        for bucket in &mut self.buckets {
-            bucket.pad();
-        }
+            if form_a <= form_b {
+                (bucket_of(form_a, form_b), [a, b])
+            } else {
+                (bucket_of(form_b, form_a), [b, a])
+            }
+        });
     }
 
-    /// Finds the contacts of the pairs last dealt; see [`Narrow::run`].
+    /// Chooses the pairs last dealt that are new or have a stirred body. Returns how many.
+    pub fn choose(&mut self, stirred: Stirred<'_>) -> usize {
+        for (number, todo) in self.todo.iter_mut().enumerate() {
+            todo.fill(&self.manifolds, number, stirred);
+        }
+        self.todo.iter().map(|todo| todo.len).sum()
+    }
+
+    /// Finds the contacts of the pairs chosen; see [`Narrow::run`].
     pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R) {
-        self.manifolds.clear();
-        if self.buckets.iter().all(|bucket| bucket.len == 0) {
+        if self.todo.iter().all(|todo| todo.len == 0) {
             return;
         }
         self.write_poses::<L>(bodies);
         let margin = L::splat(margin);
-        let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.buckets);
-        self.run_bucket::<L>(0, &cc, |a, b, _| circle_circle::collide(a, b, margin));
-        self.run_bucket::<L>(1, &cb, |a, b, _| circle_box::collide(a, b, margin));
+        let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
+        self.run_bucket::<L>(&cc, |a, b, _| circle_circle::collide(a, b, margin));
+        self.run_bucket::<L>(&cb, |a, b, _| circle_box::collide(a, b, margin));
         // Loops over edges are unrolled to the next of these: a third fewer instructions than counted ones.
         match bodies.polygons.max_count() {
             0..=4 => self.run_edged::<L, 4>(bodies, [&cp, &bb, &bp, &pp], margin),
             5 | 6 => self.run_edged::<L, 6>(bodies, [&cp, &bb, &bp, &pp], margin),
             _ => self.run_edged::<L, 8>(bodies, [&cp, &bb, &bp, &pp], margin),
         }
-        self.buckets = [cc, cb, cp, bb, bp, pp];
+        self.todo = [cc, cb, cp, bb, bp, pp];
     }
 
-    /// The buckets from circle–polygon on, in the order of their numbers (carried impulses are found by it);
-    /// no polygon has more than `EDGES` vertices.
+    /// The buckets from circle–polygon on; no polygon has more than `EDGES` vertices.
     fn run_edged<L: Lanes<Elem = R>, const EDGES: usize>(
         &mut self,
         bodies: &Bodies<R>,
-        [cp, bb, bp, pp]: [&Bucket; 4],
+        [cp, bb, bp, pp]: [&Todo; 4],
         margin: L,
     ) {
         let hull =
             |slots: &[u32]| Hull::<L>::gather(&bodies.polygons.world, &polygon_index::<L, R>(bodies, slots));
-        self.run_bucket::<L>(2, cp, |a, b, [_, ib]| circle_polygon::collide(a, b, &hull(ib), EDGES, margin));
-        self.run_bucket::<L>(3, bb, |a, b, _| box_box::collide(a, b, margin));
-        self.run_bucket::<L>(4, bp, |a, b, [_, ib]| {
+        self.run_bucket::<L>(cp, |a, b, [_, ib]| circle_polygon::collide(a, b, &hull(ib), EDGES, margin));
+        self.run_bucket::<L>(bb, |a, b, _| box_box::collide(a, b, margin));
+        self.run_bucket::<L>(bp, |a, b, [_, ib]| {
             polygon_polygon::collide::<L, EDGES>(a, b, &Hull::of_box(a), &hull(ib), margin)
         });
-        self.run_bucket::<L>(5, pp, |a, b, [ia, ib]| {
+        self.run_bucket::<L>(pp, |a, b, [ia, ib]| {
             polygon_polygon::collide::<L, EDGES>(a, b, &hull(ia), &hull(ib), margin)
         });
     }
 
-    /// Pairs that went into each bucket in the last run, with the bucket's forms.
+    /// Pairs in each bucket, with the bucket's forms.
     pub fn bucket_sizes(&self) -> [(Form, Form, usize); 6] {
-        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.buckets[k].len))
+        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.manifolds.bucket(k).len()))
+    }
+
+    /// The places of the pairs last looked at.
+    pub fn looked_at(&self) -> impl Iterator<Item = u32> + '_ {
+        self.todo.iter().flat_map(|todo| &todo.place[..todo.len]).copied()
     }
 
     fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
@@ -208,97 +227,73 @@ impl<R: Real> Narrow<R> {
     #[inline(always)]
     fn run_bucket<L: Lanes<Elem = R>>(
         &mut self,
-        number: u16,
-        bucket: &Bucket,
+        todo: &Todo,
         collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2]) -> Found<L>,
     ) {
-        self.manifolds.reserve(bucket.len + 16);
         let mut at = 0;
-        while at < bucket.len {
-            let slots = [&bucket.a[at..at + L::WIDTH], &bucket.b[at..at + L::WIDTH]];
+        while at < todo.len {
+            let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
+            let places = &todo.place[at..at + L::WIDTH];
             let a = Pose::gather(self.poses.rows(), slots[0]);
             let b = Pose::gather(self.poses.rows(), slots[1]);
             let found = collide(&a, &b, slots);
-            let real_lanes = (1u32 << (bucket.len - at).min(L::WIDTH)) - 1;
-            let hits = found.hits.map(|mask| mask.bits() & real_lanes);
-            if hits[0] != 0 {
-                self.keep(&a, &b, &found, hits, slots, number);
+            if found.hits[0].any() {
+                self.keep(&a, &b, &found, places);
+            } else {
+                self.manifolds.write_apart(places);
             }
             at += L::WIDTH;
         }
     }
 
     #[inline(always)]
-    fn keep<L: Lanes<Elem = R>>(
-        &mut self,
-        a: &Pose<L>,
-        b: &Pose<L>,
-        found: &Found<L>,
-        hits: [u32; 2],
-        slots: [&[u32]; 2],
-        bucket: u16,
-    ) {
-        let from_b = a.x - b.x;
+    fn keep<L: Lanes<Elem = R>>(&mut self, a: &Pose<L>, b: &Pose<L>, found: &Found<L>, places: &[u32]) {
+        let (one, zero) = (L::one(), L::zero());
+        let two_points = L::select(found.hits[1], L::lit(2.0), one);
+        let features = found.features.unwrap_or([zero, zero]);
+        let second = L::select(found.hits[1], features[1], zero);
+        let code = L::select(found.hits[0], Code::lanes([features[0], second], two_points), zero);
         let [arm0, arm1] = found.arms;
-        let [arm_b0, arm_b1] = found.arms.map(|arm| arm + from_b);
+        let to_b = b.x - a.x;
+        let geometry = [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, to_b.x, to_b.y];
         let (friction, restitution) = (a.friction.min(b.friction), a.restitution.min(b.restitution));
-        let ([s0, s1], zero) = (found.separations, L::zero());
-        let geometry = [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, s0, s1];
-        let surface = [arm_b0.x, arm_b0.y, arm_b1.x, arm_b1.y, friction, restitution, zero, zero];
-        if let Some(features) = found.features {
-            features[0].store(&mut self.features[0]);
-            features[1].store(&mut self.features[1]);
-        }
-        let key = |lane: usize| Key {
-            a: slots[0][lane],
-            b: slots[1][lane],
-            features: match found.features {
-                Some(_) => [0, 1].map(|k| self.features[k][lane].to_f64() as u16),
-                None => [0; 2],
-            },
-            points: 1 + (hits[1] >> lane & 1) as u16,
-            bucket,
-        };
-        if hits[0].count_ones() as usize == L::WIDTH {
-            // Every lane touches, as in a pile most do: rows go straight to their places.
-            self.manifolds.push_all::<L>((0..L::WIDTH).map(key), geometry, surface);
-        } else {
-            let [geometry_rows, surface_rows] = &mut self.scratch;
-            L::store_rows(geometry, geometry_rows);
-            L::store_rows(surface, surface_rows);
-            for lane in set_lanes(hits[0]) {
-                self.manifolds.push(key(lane), geometry_rows[lane], surface_rows[lane]);
-            }
-        }
+        let gap = [found.separations[0], found.separations[1], friction, restitution];
+        self.manifolds.write(places, code, geometry, gap, &mut self.scratch);
     }
 }
 
-/// The pairs of one pair of forms, A and B apart so that a batch's slots are two slices.
+/// The pairs of one bucket to look at: A, B and places apart so that a batch's are three slices.
 #[derive(Clone, Debug, Default)]
-struct Bucket {
+struct Todo {
     a: Vec<u32>,
     b: Vec<u32>,
+    place: Vec<u32>,
     /// Pairs; behind them the world against itself, up to whole lanes at every width.
     len: usize,
 }
 
-impl Bucket {
-    fn clear(&mut self) {
+impl Todo {
+    fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, stirred: Stirred<'_>) {
         self.a.clear();
         self.b.clear();
-    }
-
-    #[inline(always)]
-    fn push(&mut self, [a, b]: [u32; 2]) {
-        self.a.push(a);
-        self.b.push(b);
-    }
-
-    fn pad(&mut self) {
+        self.place.clear();
+        for at in manifolds.bucket(bucket) {
+            let [a, b] = manifolds.slots(at);
+            let look = match stirred {
+                Stirred::All => true,
+                Stirred::These(bodies) => bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at),
+            };
+            if look {
+                self.a.push(a);
+                self.b.push(b);
+                self.place.push(at as u32);
+            }
+        }
         self.len = self.a.len();
         let padded = self.len.next_multiple_of(16);
         self.a.resize(padded, 0);
         self.b.resize(padded, 0);
+        self.place.resize(padded, manifolds.spill());
     }
 }
 

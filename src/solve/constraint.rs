@@ -1,228 +1,280 @@
-//! What solvers share: a batch of contacts in lanes, and the small linear algebra of one contact.
+//! One batch of contacts in lanes, as solvers stream them: what a pass needs and nothing else.
+//!
+//! A contact acts along its normal at each point and along its tangent at the middle of its points. With
+//! t = n turned a quarter counter-clockwise, an arm r enters only through its levers r×n and r×t.
+//! Both points of a face lie on one line along t, so one friction impulse bounded by μ(λ₀ + λ₁) does what two
+//! would: a third less work, tried against two and no pile or slope told them apart.
+//!
+//! Bytes per contact in f32: two points 80 (19 values and the restitution), one point 60 (15 values), and 8 for the slots.
+//! Kept out: masses (they come with the bodies' rows), arms (levers serve), whatever only some solver wants.
 
-use crate::contact::{Manifolds, geometry, surface};
-use crate::lanes::{Lanes, ROW, Real};
+use super::stream::Ends;
+use crate::lanes::{Lanes, Real};
 use crate::vec2::Vec2;
 
-use super::color::Batch;
-
-/// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
-pub(super) const CORRECTION_SHARE: f64 = 0.7;
-/// Depth left alone, metres (the thesis's 0.01 px).
-pub(super) const SLOP_M: f64 = 4e-4;
-/// Approaches slower than this do not bounce, m/s: gravity alone makes 0.16 m/s in a step of 1/60 s.
-pub(super) const BOUNCE_THRESHOLD_M_PER_S: f64 = 0.5;
-
-/// Velocity and displacement of the bodies of one side of a batch.
-#[derive(Clone, Copy)]
-pub(super) struct Side<L> {
-    pub(super) velocity: Vec2<L>,
-    pub(super) spin: L,
-    pub(super) inv_mass: L,
-    pub(super) inv_inertia: L,
-    pub(super) moved: Vec2<L>,
-    pub(super) turned: L,
+/// Velocity of the bodies of one side of a batch, m/s and rad/s, and their inverse mass.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<L> {
+    /// Of the centroid.
+    pub velocity: Vec2<L>,
+    /// Angular.
+    pub spin: L,
+    /// 1/kg.
+    pub inv_mass: L,
 }
 
 impl<L: Lanes> Side<L> {
+    /// From rows of four: vx, vy, w, 1/m.
     #[inline(always)]
-    pub(super) fn gather(rows: &[[L::Elem; ROW]], index: &[u32]) -> Self {
-        let [vx, vy, spin, inv_mass, inv_inertia, mx, my, turned] = L::gather_rows(rows, index);
-        Self { velocity: Vec2::new(vx, vy), spin, inv_mass, inv_inertia, moved: Vec2::new(mx, my), turned }
+    pub fn gather(rows: &[[L::Elem; 4]], index: &[u32]) -> Self {
+        let [x, y, spin, inv_mass] = L::gather_fours(rows, index);
+        Self { velocity: Vec2::new(x, y), spin, inv_mass }
     }
 
+    /// Back into the rows.
     #[inline(always)]
-    pub(super) fn scatter(&self, rows: &mut [[L::Elem; ROW]], index: &[u32]) {
-        let mut out = [[L::Elem::ZERO; ROW]; 16];
-        let values = [
-            self.velocity.x,
-            self.velocity.y,
-            self.spin,
-            self.inv_mass,
-            self.inv_inertia,
-            self.moved.x,
-            self.moved.y,
-            self.turned,
-        ];
-        L::store_rows(values, &mut out);
-        for (row, &slot) in out.iter().zip(index) {
-            rows[slot as usize] = *row;
-        }
-    }
-
-    /// Takes `impulse` (N·s) at `arm`, times `sign`.
-    #[inline(always)]
-    pub(super) fn push(&mut self, impulse: Vec2<L>, arm: Vec2<L>) {
-        self.velocity = self.velocity + impulse * self.inv_mass;
-        self.spin = self.spin + arm.cross(impulse) * self.inv_inertia;
-    }
-
-    /// Like [`Side::push`], for displacement.
-    #[inline(always)]
-    pub(super) fn shift(&mut self, push: Vec2<L>, arm: Vec2<L>) {
-        self.moved = self.moved + push * self.inv_mass;
-        self.turned = self.turned + arm.cross(push) * self.inv_inertia;
-    }
-
-    /// Effective inverse mass along `n` at `arm`.
-    #[inline(always)]
-    pub(super) fn yield_along(&self, n: Vec2<L>, arm: Vec2<L>) -> L {
-        let lever = arm.cross(n);
-        self.inv_mass + self.inv_inertia * (lever * lever)
+    pub fn scatter(&self, rows: &mut [[L::Elem; 4]], index: &[u32]) {
+        L::scatter_fours([self.velocity.x, self.velocity.y, self.spin, self.inv_mass], rows, index);
     }
 }
 
-/// `WIDTH` contacts of `POINTS` points each, as the narrow phase wrote them.
-pub(super) struct Contacts<L, const POINTS: usize> {
-    pub(super) normal: Vec2<L>,
-    pub(super) tangent: Vec2<L>,
-    pub(super) arms_a: [Vec2<L>; POINTS],
-    pub(super) arms_b: [Vec2<L>; POINTS],
-    pub(super) separations: [L; POINTS],
-    pub(super) friction: L,
-    pub(super) restitution: L,
+/// What acts at one point along the normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Point<L> {
+    /// r×n of the arms from A and B, metres.
+    pub levers: [L; 2],
+    /// Effective mass along the normal, kg; 0 where the point does not exist.
+    pub mass: L,
+    /// Present separation, metres.
+    pub separation: L,
+    /// Accumulated normal impulse over the effective mass, m/s: what it stops.
+    pub held: L,
 }
 
-impl<L: Lanes, const POINTS: usize> Contacts<L, POINTS> {
+impl<L: Lanes> Point<L> {
+    /// Accumulated normal impulse, N·s per substep.
     #[inline(always)]
-    pub(super) fn gather(manifolds: &Manifolds<L::Elem>, batch: &Batch) -> Self {
-        let first = L::gather_rows(manifolds.geometry.rows(), &batch.contact);
-        let second = L::gather_rows(manifolds.surface.rows(), &batch.contact);
-        let vec = |row: &[L; ROW], at: usize, k: usize| Vec2::new(row[at + 2 * k], row[at + 2 * k + 1]);
-        let normal = Vec2::new(first[geometry::NORMAL], first[geometry::NORMAL + 1]);
-        Self {
-            normal,
-            tangent: -normal.right(),
-            arms_a: std::array::from_fn(|k| vec(&first, geometry::ARM_A, k)),
-            arms_b: std::array::from_fn(|k| vec(&second, surface::ARM_B, k)),
-            separations: std::array::from_fn(|k| first[geometry::SEPARATION + k]),
-            friction: second[surface::FRICTION],
-            restitution: second[surface::RESTITUTION],
-        }
+    pub fn impulse(&self) -> L {
+        self.held * self.mass
     }
+}
 
-    /// How normal velocities answer to normal impulses.
-    #[inline(always)]
-    pub(super) fn response(&self, a: &Side<L>, b: &Side<L>) -> Response<L, POINTS> {
-        let levers = |arms: [Vec2<L>; POINTS]| arms.map(|arm| arm.cross(self.normal));
-        Response::new(a, b, levers(self.arms_a), levers(self.arms_b))
-    }
+/// `WIDTH` contacts of `POINTS` points each.
+#[derive(Clone, Copy, Debug)]
+pub struct Constraint<L, const POINTS: usize> {
+    /// Unit normal from A to B.
+    pub normal: Vec2<L>,
+    /// 1/(kg·m²) of A and B.
+    pub inv_inertia: [L; 2],
+    /// Along the normal.
+    pub points: [Point<L>; POINTS],
+    /// r×t of the arms from A and B to the middle of the points, metres.
+    pub tangent_levers: [L; 2],
+    /// Effective mass along the tangent, kg.
+    pub tangent_mass: L,
+    /// Accumulated friction impulse, N·s per substep.
+    pub tangent_impulse: L,
+    /// Coulomb coefficient.
+    pub friction: L,
+    /// Coefficient of restitution.
+    pub restitution: L,
+}
 
-    /// Velocity of B relative to A at point `k`.
-    #[inline(always)]
-    pub(super) fn velocity(&self, a: &Side<L>, b: &Side<L>, k: usize) -> Vec2<L> {
-        (b.velocity + self.arms_b[k].turned_by(b.spin)) - (a.velocity + self.arms_a[k].turned_by(a.spin))
-    }
-
-    /// Gives `impulse` to B at point `k` and takes it from A.
-    #[inline(always)]
-    pub(super) fn push(&self, a: &mut Side<L>, b: &mut Side<L>, k: usize, impulse: Vec2<L>) {
-        a.push(-impulse, self.arms_a[k]);
-        b.push(impulse, self.arms_b[k]);
-    }
-
-    /// The inverse of the effective mass along the tangent at point `k`.
-    #[inline(always)]
-    pub(super) fn tangent_mass(&self, a: &Side<L>, b: &Side<L>, k: usize) -> L {
-        inverse(a.yield_along(self.tangent, self.arms_a[k]) + b.yield_along(self.tangent, self.arms_b[k]))
-    }
-
-    /// Present separation of point `k`: as found, plus what the bodies moved since the step began.
-    #[inline(always)]
-    pub(super) fn separation(&self, a: &Side<L>, b: &Side<L>, k: usize) -> L {
-        let moved =
-            (b.moved + self.arms_b[k].turned_by(b.turned)) - (a.moved + self.arms_a[k].turned_by(a.turned));
-        self.separations[k] + moved.dot(self.normal)
-    }
-
-    /// Moves the bodies apart by a share of what they overlap beyond the slop.
-    #[inline(always)]
-    pub(super) fn correct(&self, response: &Response<L, POINTS>, a: &mut Side<L>, b: &mut Side<L>) {
-        // What each point still has to rise, as a velocity of approach would ask of an impulse.
-        let sinking: [L; POINTS] = std::array::from_fn(|k| {
-            let excess = -self.separation(a, b, k) - L::lit(SLOP_M);
-            -(L::zero().max(excess) * L::lit(CORRECTION_SHARE))
-        });
-        let pushes = non_negative(response, sinking);
-        for k in 0..POINTS {
-            a.shift(-(self.normal * pushes[k]), self.arms_a[k]);
-            b.shift(self.normal * pushes[k], self.arms_b[k]);
-        }
-    }
+/// The rows of `WIDTH` manifolds and bodies, gathered: what a constraint is prepared from.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<L: Lanes> {
+    /// See [`crate::contact::geometry`].
+    pub geometry: [L; 8],
+    /// See [`crate::contact::gap`].
+    pub gap: [L; 4],
+    /// See [`crate::contact::impulse`].
+    pub impulse: [L; 4],
+    /// 1/m, 1/I of A and B.
+    pub matter: [[L; 2]; 2],
+    /// Lanes whose manifold has two points.
+    pub two_points: L::Mask,
 }
 
 /// 1/k, or 0 where nothing yields (padding).
 #[inline(always)]
 pub(super) fn inverse<L: Lanes>(k: L) -> L {
-    let none = k.le(L::zero());
-    L::select(none, L::zero(), L::one() / L::select(none, L::one(), k))
+    let some = L::zero().lt(k);
+    L::select(some, L::one() / L::select(some, k, L::one()), L::zero())
 }
 
-/// How the normal velocities of a contact's points answer to its normal impulses: the matrix
-/// K = J·M⁻¹·Jᵀ, its diagonal's inverse, and for two points whether K can be inverted.
-pub(super) struct Response<L: Lanes, const POINTS: usize> {
-    diagonal: [L; POINTS],
-    inverse: [L; POINTS],
-    cross: L,
-    inverse_determinant: L,
-    regular: L::Mask,
-}
-
-impl<L: Lanes, const POINTS: usize> Response<L, POINTS> {
-    /// From the levers r×n of the points on both sides.
+impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
+    /// From manifolds and masses.
     #[inline(always)]
-    pub(super) fn new(a: &Side<L>, b: &Side<L>, lever_a: [L; POINTS], lever_b: [L; POINTS]) -> Self {
-        let mass = a.inv_mass + b.inv_mass;
-        let entry = |i: usize, j: usize| {
-            mass + (a.inv_inertia * (lever_a[i] * lever_a[j]) + b.inv_inertia * (lever_b[i] * lever_b[j]))
-        };
-        let diagonal: [L; POINTS] = std::array::from_fn(|k| entry(k, k));
-        let last = POINTS - 1;
-        let cross = entry(0, last);
-        let determinant = diagonal[0] * diagonal[last] - cross * cross;
-        // Points so close together that rounding would decide how they share their load go one by one.
-        let regular = (diagonal[0] * diagonal[last]).lt(determinant * L::lit(1e3));
-        let inverse_determinant = inverse(L::select(regular, determinant, L::zero()));
-        Self { diagonal, inverse: diagonal.map(inverse), cross, inverse_determinant, regular }
-    }
-
-    /// K·x.
-    #[inline(always)]
-    pub(super) fn times(&self, x: [L; POINTS]) -> [L; POINTS] {
-        if POINTS == 1 {
-            return std::array::from_fn(|k| self.diagonal[k] * x[k]);
-        }
-        std::array::from_fn(|k| self.diagonal[k] * x[k] + self.cross * x[POINTS - 1 - k])
-    }
-}
-
-/// x ≥ 0 with K·x + b ≥ 0 and x·(K·x + b) = 0: impulses that stop the points from approaching at −b.
-///
-/// One point: max(0, −b/k). Two: both push, else the first alone, else the second alone, else neither;
-/// the cases exclude each other for a regular K.
-#[inline(always)]
-pub(super) fn non_negative<L: Lanes, const POINTS: usize>(
-    k: &Response<L, POINTS>,
-    b: [L; POINTS],
-) -> [L; POINTS] {
-    let zero = L::zero();
-    let alone: [L; POINTS] = std::array::from_fn(|i| zero.max(-(b[i] * k.inverse[i])));
-    if POINTS == 1 {
-        return alone;
-    }
-    let last = POINTS - 1;
-    let both = [
-        (k.cross * b[last] - k.diagonal[last] * b[0]) * k.inverse_determinant,
-        (k.cross * b[0] - k.diagonal[0] * b[last]) * k.inverse_determinant,
-    ];
-    let use_both = k.regular & zero.le(both[0]) & zero.le(both[1]);
-    let use_first = zero.le(k.cross * alone[0] + b[last]);
-    std::array::from_fn(|i| {
-        let single = if i == 0 {
-            L::select(use_first, alone[0], zero)
+    pub fn prepare(parts: &Parts<L>) -> Self {
+        let [nx, ny, ax0, ay0, ax1, ay1, dx, dy] = parts.geometry;
+        let normal = Vec2::new(nx, ny);
+        let tangent = -normal.right();
+        let to_b = Vec2::new(dx, dy);
+        let arms = [Vec2::new(ax0, ay0), Vec2::new(ax1, ay1)];
+        let zero = L::zero();
+        let [[ma, ia], [mb, ib]] = parts.matter;
+        let levers = |arm: Vec2<L>, axis: Vec2<L>| [arm.cross(axis), (arm - to_b).cross(axis)];
+        let response = |[la, lb]: [L; 2]| (ma + mb) + (ia * (la * la) + ib * (lb * lb));
+        let points = std::array::from_fn(|k| {
+            let levers = levers(arms[k], normal);
+            let response = response(levers);
+            let exists = |value: L| if k == 0 { value } else { L::select(parts.two_points, value, zero) };
+            Point {
+                levers: levers.map(exists),
+                mass: exists(inverse(response)),
+                separation: exists(parts.gap[k]),
+                held: parts.impulse[k] * response,
+            }
+        });
+        let middle = if POINTS == 1 {
+            arms[0]
         } else {
-            L::select(use_first, zero, alone[last])
+            let half = L::select(parts.two_points, L::lit(0.5), zero);
+            arms[0] + (arms[1] - arms[0]) * half
         };
-        L::select(use_both, both[i], single)
-    })
+        let tangent_levers = levers(middle, tangent);
+        Self {
+            normal,
+            inv_inertia: [ia, ib],
+            points,
+            tangent_levers,
+            tangent_mass: inverse(response(tangent_levers)),
+            tangent_impulse: parts.impulse[2],
+            friction: parts.gap[2],
+            restitution: parts.gap[3],
+        }
+    }
+
+    /// Puts back what lanes without a bit in `fresh` held: from an impulse it would come back rounded, and which
+    /// lanes share a batch must not matter.
+    pub fn keep_held(&mut self, old: &Self, fresh: u32) {
+        let lanes: [L::Elem; 16] =
+            std::array::from_fn(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
+        let fresh = L::zero().lt(L::load(&lanes));
+        for (point, old) in self.points.iter_mut().zip(&old.points) {
+            point.held = L::select(fresh, point.held, old.held);
+        }
+    }
+
+    /// The tangent: the normal turned a quarter counter-clockwise.
+    #[inline(always)]
+    pub fn tangent(&self) -> Vec2<L> {
+        -self.normal.right()
+    }
+
+    /// What the separations of the points change by when A and B move and turn so little.
+    #[inline(always)]
+    pub fn change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
+        let along = Vec2::new(b[0] - a[0], b[1] - a[1]).dot(self.normal);
+        std::array::from_fn(|k| {
+            let [la, lb] = self.points[k].levers;
+            along + (b[2] * lb - a[2] * la)
+        })
+    }
+
+    /// Brings the separations up to date with the displacement of both sides.
+    #[inline(always)]
+    pub fn follow(&mut self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) {
+        let change = self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
+        for k in 0..POINTS {
+            self.points[k].separation = self.points[k].separation + change[k];
+        }
+    }
+
+    /// Gives all accumulated impulses to both sides.
+    #[inline(always)]
+    pub fn apply_accumulated(&self, a: &mut Side<L>, b: &mut Side<L>) {
+        let mut normals = Normals::begin(self, a, b);
+        for k in 0..POINTS {
+            normals.push(self, k, self.points[k].impulse());
+        }
+        normals.end(self, a, b);
+        self.rub(a, b, self.tangent_impulse);
+    }
+
+    /// Friction: what stops sliding, within the cone of the normal impulses.
+    #[inline(always)]
+    pub fn solve_friction(&mut self, a: &mut Side<L>, b: &mut Side<L>) {
+        let tangent = self.tangent();
+        let [la, lb] = self.tangent_levers;
+        let sliding = (b.velocity - a.velocity).dot(tangent) + (b.spin * lb - a.spin * la);
+        let mut load = self.points[0].impulse();
+        for point in &self.points[1..] {
+            load = load + point.impulse();
+        }
+        let bound = self.friction * load;
+        let held = self.tangent_impulse;
+        let next = (-bound).max(bound.min(held - sliding * self.tangent_mass));
+        self.tangent_impulse = next;
+        self.rub(a, b, next - held);
+    }
+
+    /// A tangential impulse at the middle of the points.
+    #[inline(always)]
+    fn rub(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: L) {
+        let tangent = self.tangent();
+        let [la, lb] = self.tangent_levers;
+        a.velocity = a.velocity - tangent * (impulse * a.inv_mass);
+        b.velocity = b.velocity + tangent * (impulse * b.inv_mass);
+        a.spin = a.spin - self.inv_inertia[0] * (impulse * la);
+        b.spin = b.spin + self.inv_inertia[1] * (impulse * lb);
+    }
+}
+
+/// Normal impulses in progress: linear velocities are touched once for all points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Normals<L> {
+    /// (vB − vA)·n.
+    approach: L,
+    /// Sum of impulses given.
+    given: L,
+    inv_mass: L,
+    spins: [L; 2],
+}
+
+impl<L: Lanes> Normals<L> {
+    #[inline(always)]
+    pub(super) fn begin<const POINTS: usize>(c: &Constraint<L, POINTS>, a: &Side<L>, b: &Side<L>) -> Self {
+        Self {
+            approach: (b.velocity - a.velocity).dot(c.normal),
+            given: L::zero(),
+            inv_mass: a.inv_mass + b.inv_mass,
+            spins: [a.spin, b.spin],
+        }
+    }
+
+    /// Relative normal velocity at a point, m/s, negative while it closes.
+    #[inline(always)]
+    pub(super) fn velocity(&self, point: &Point<L>) -> L {
+        self.approach
+            + self.inv_mass * self.given
+            + (self.spins[1] * point.levers[1] - self.spins[0] * point.levers[0])
+    }
+
+    /// 1/mA + 1/mB.
+    #[inline(always)]
+    pub(super) fn inv_mass(&self) -> L {
+        self.inv_mass
+    }
+
+    /// An impulse along the normal at point `k`.
+    #[inline(always)]
+    pub(super) fn push<const POINTS: usize>(&mut self, c: &Constraint<L, POINTS>, k: usize, impulse: L) {
+        let [la, lb] = c.points[k].levers;
+        self.given = self.given + impulse;
+        self.spins[0] = self.spins[0] - c.inv_inertia[0] * (impulse * la);
+        self.spins[1] = self.spins[1] + c.inv_inertia[1] * (impulse * lb);
+    }
+
+    #[inline(always)]
+    pub(super) fn end<const POINTS: usize>(
+        &self,
+        c: &Constraint<L, POINTS>,
+        a: &mut Side<L>,
+        b: &mut Side<L>,
+    ) {
+        a.velocity = a.velocity - c.normal * (self.given * a.inv_mass);
+        b.velocity = b.velocity + c.normal * (self.given * b.inv_mass);
+        (a.spin, b.spin) = (self.spins[0], self.spins[1]);
+    }
 }

@@ -1,88 +1,104 @@
 //! `impulse`: the thesis's resolution, cleaned. One pass per substep; the cheap end of the diagram.
 //!
-//! Kept from it: e = min, μ = min, one impulse per point at once, positional correction by a share of
-//! the depth beyond a slop. Mended: separating points are left alone, friction stays in Coulomb's cone,
-//! slow approaches do not bounce, both points of a face are corrected, rotation takes part in the
-//! correction, and the result does not depend on memory order.
+//! Kept from it: e = min, μ = min, no memory of the last step, positional correction by a share of the depth
+//! beyond a slop. Mended: separating points are left alone, friction stays in Coulomb's cone, slow approaches
+//! do not bounce, both points of a face are corrected, rotation takes part in the correction, and the result
+//! does not depend on memory order.
 //!
-//! For a point with arms rA, rB and normal n, k = 1/mA + 1/mB + (rA×n)²/IA + (rB×n)²/IB and
-//! jₙ = max(0, −(1 + e)·vₙ/k); jₜ = clamp(−vₜ/kₜ, ±μ·jₙ) along t = n turned a quarter counter-clockwise.
-//! A point's present separation is s + n·(Δx_B + Δθ_B×rB − Δx_A − Δθ_A×rA): changes since the step began.
+//! For a point with levers l = r×n, k = 1/mA + 1/mB + lA²/IA + lB²/IB and jₙ = max(0, −(1 + e)·vₙ/k);
+//! jₜ = clamp(−vₜ/kₜ, ±μ·Σjₙ) along t = n turned a quarter counter-clockwise.
 //!
 //! The two points of a face are solved together, directly and by cases ([`non_negative`]): one after the
 //! other left a resting box turning at 0.02 rad/s and creeping sideways at 5 cm/s; together, neither.
 
-use crate::column::Column;
-use crate::contact::Manifolds;
-use crate::lanes::{Lanes, ROW};
+use super::block::{cross, non_negative};
+use super::constraint::{Constraint, Normals, Side};
+use super::stream::{Ends, Visit};
+use crate::lanes::Lanes;
 
-use super::Traits;
-use super::color::{Batch, Coloring};
-use super::constraint::{BOUNCE_THRESHOLD_M_PER_S, Contacts, Side, non_negative};
+/// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
+pub(super) const CORRECTION_SHARE: f64 = 0.7;
+/// Depth left alone, over the scene's median radius (the thesis's 0.01 px over half its bodies' 25 px).
+pub(super) const SLOP: f64 = 1e-3;
 
-/// One pass over all contacts, colour by colour.
-pub(super) fn solve<L: Lanes>(
-    traits: Traits,
-    manifolds: &Manifolds<L::Elem>,
-    coloring: &Coloring,
-    rows: &mut Column<L::Elem>,
-) {
-    let rows = rows.rows_mut();
-    match (traits.friction, traits.restitution) {
-        (true, true) => solve_with::<L, true, true>(manifolds, coloring, rows),
-        (true, false) => solve_with::<L, true, false>(manifolds, coloring, rows),
-        (false, true) => solve_with::<L, false, true>(manifolds, coloring, rows),
-        (false, false) => solve_with::<L, false, false>(manifolds, coloring, rows),
-    }
+/// Velocities: one pass.
+#[derive(Debug)]
+pub(super) struct Resolve<'a, L: Lanes, const FRICTION: bool, const BOUNCE: bool> {
+    /// Velocities per slot: vx, vy, ω, 1/m.
+    pub(super) rows: &'a mut [[L::Elem; 4]],
+    /// Displacement of the last substep per slot; `None` where gaps are up to date.
+    pub(super) moved: Option<&'a [[L::Elem; 4]]>,
+    /// Slower approaches do not bounce, m/s.
+    pub(super) threshold: L,
 }
 
-fn solve_with<L: Lanes, const FRICTION: bool, const BOUNCE: bool>(
-    manifolds: &Manifolds<L::Elem>,
-    coloring: &Coloring,
-    rows: &mut [[L::Elem; ROW]],
-) {
-    for batch in coloring.batches() {
-        if batch.points == 1 {
-            solve_batch::<L, FRICTION, BOUNCE, 1>(manifolds, batch, rows);
-        } else {
-            solve_batch::<L, FRICTION, BOUNCE, 2>(manifolds, batch, rows);
+impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_, L, FRICTION, BOUNCE> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        if let Some(moved) = self.moved {
+            c.follow(moved, &ends);
         }
-    }
-}
-
-/// The contacts of a batch: bodies gathered once, normal impulses, friction, correction, scattered once.
-#[inline(always)]
-fn solve_batch<L: Lanes, const FRICTION: bool, const BOUNCE: bool, const POINTS: usize>(
-    manifolds: &Manifolds<L::Elem>,
-    batch: &Batch,
-    rows: &mut [[L::Elem; ROW]],
-) {
-    let contacts = Contacts::<L, POINTS>::gather(manifolds, batch);
-    let (mut a, mut b) = (Side::gather(rows, &batch.a), Side::gather(rows, &batch.b));
-    let response = contacts.response(&a, &b);
-
-    let approaches: [L; POINTS] = std::array::from_fn(|k| {
-        let approach = contacts.velocity(&a, &b, k).dot(contacts.normal);
-        if BOUNCE {
-            let bounces = approach.lt(L::lit(-BOUNCE_THRESHOLD_M_PER_S));
-            approach * (L::one() + L::select(bounces, contacts.restitution, L::zero()))
-        } else {
-            approach
-        }
-    });
-    let impulses = non_negative(&response, approaches);
-    for k in 0..POINTS {
-        contacts.push(&mut a, &mut b, k, contacts.normal * impulses[k]);
-    }
-    if FRICTION {
+        let mut normals = Normals::begin(c, &a, &b);
+        let approaches: [L; POINTS] = std::array::from_fn(|k| {
+            let approach = normals.velocity(&c.points[k]);
+            if BOUNCE {
+                let bounces = approach.lt(-self.threshold);
+                approach * (L::one() + L::select(bounces, c.restitution, L::zero()))
+            } else {
+                approach
+            }
+        });
+        let masses = c.points.map(|point| point.mass);
+        let stopped = non_negative(cross(c, &normals), masses, approaches);
         for k in 0..POINTS {
-            let bound = contacts.friction * impulses[k];
-            let sliding = contacts.velocity(&a, &b, k).dot(contacts.tangent);
-            let held = (-bound).max(bound.min(-(sliding * contacts.tangent_mass(&a, &b, k))));
-            contacts.push(&mut a, &mut b, k, contacts.tangent * held);
+            normals.push(c, k, masses[k] * stopped[k]);
+            // Not carried to the next step, but what friction is bounded by and what reports show.
+            c.points[k].held = stopped[k];
         }
+        normals.end(c, &mut a, &mut b);
+        if FRICTION {
+            c.tangent_impulse = L::zero();
+            c.solve_friction(&mut a, &mut b);
+        }
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
     }
-    contacts.correct(&response, &mut a, &mut b);
-    a.scatter(rows, &batch.a[..batch.len]);
-    b.scatter(rows, &batch.b[..batch.len]);
+}
+
+/// Positions: what overlaps is moved apart, with no effect on velocities.
+#[derive(Debug)]
+pub(super) struct Correct<'a, L: Lanes> {
+    /// Displacement of this substep per slot: x, y, angle, –.
+    pub(super) moved: &'a mut [[L::Elem; 4]],
+    /// Velocity rows, for their inverse masses.
+    pub(super) rows: &'a [[L::Elem; 4]],
+    /// Depth left alone, metres.
+    pub(super) slop: L,
+}
+
+impl<L: Lanes> Visit<L> for Correct<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        // A displacement is to its push as a velocity is to its impulse: the same kernels serve.
+        let side = |moved: &[[L::Elem; 4]], slots: &[u32]| Side {
+            inv_mass: Side::<L>::gather(self.rows, slots).inv_mass,
+            ..Side::gather(moved, slots)
+        };
+        let (mut a, mut b) = (side(self.moved, ends.a), side(self.moved, ends.b));
+        let mut normals = Normals::begin(c, &a, &b);
+        let sinking: [L; POINTS] = std::array::from_fn(|k| {
+            let point = &c.points[k];
+            let excess = -(point.separation + normals.velocity(point)) - self.slop;
+            -(L::zero().max(excess) * L::lit(CORRECTION_SHARE))
+        });
+        let masses = c.points.map(|point| point.mass);
+        let raised = non_negative(cross(c, &normals), masses, sinking);
+        for k in 0..POINTS {
+            normals.push(c, k, masses[k] * raised[k]);
+        }
+        normals.end(c, &mut a, &mut b);
+        a.scatter(self.moved, ends.a);
+        b.scatter(self.moved, ends.b);
+    }
 }

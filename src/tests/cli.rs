@@ -212,7 +212,8 @@ fn seeds_choose_other_scenes_and_lanes_do_not() {
         let line = format!("run all --steps 30 --json {more}");
         lamina(&line.split_whitespace().collect::<Vec<_>>()).json()["hash"].clone()
     };
-    assert_eq!(hash("--lanes 1"), hash("--lanes 16 --skip none"));
+    assert_eq!(hash("--lanes 1"), hash("--lanes 16"));
+    assert_eq!(hash("--lanes 4 --skip exact"), hash("--lanes 16 --skip none"));
     assert_ne!(hash("--seed 1"), hash("--seed 2"));
 }
 

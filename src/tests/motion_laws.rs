@@ -21,7 +21,7 @@ fn oscillator() -> Scene {
 
 /// (x, vx) after each of `steps` steps of z, the start first.
 fn course(integrator: Integrator, z: f64, steps: usize) -> Vec<[f64; 2]> {
-    let settings = Settings { integrator, ..Settings::default().with_precision(Precision::F64) };
+    let settings = Settings { integrator, substeps: 1, ..Settings::default().with_precision(Precision::F64) };
     let mut world = World::<f64s::X4>::from_scene(&oscillator(), settings).expect("the scene is good");
     let mut states = vec![[1.0, 0.5]];
     for _ in 0..steps {

@@ -35,7 +35,8 @@ impl Problem {
     fn world(&self, integrator: Integrator) -> World<f64s::X4> {
         let [x, y, vx, vy] = self.start;
         let scene = scene_of(vec![disc([x, y]).moving([vx, vy], 0.0).mass(self.mass)], self.forces);
-        let settings = Settings { integrator, ..Settings::default().with_precision(Precision::F64) };
+        let settings =
+            Settings { integrator, substeps: 1, ..Settings::default().with_precision(Precision::F64) };
         World::from_scene(&scene, settings).expect("the problem is good")
     }
 

@@ -258,7 +258,7 @@ fn slivers_of_a_thousand_to_one_agree_too() {
 
 /// Contacts by their pair, so that lists of other orders can be compared.
 fn by_pair(contacts: Vec<ContactBits>) -> BTreeMap<(u32, u32), ContactBits> {
-    contacts.into_iter().map(|c| ((c.0.a, c.0.b), c)).collect()
+    contacts.into_iter().map(|c| ((c.0[0], c.0[1]), c)).collect()
 }
 
 fn company_changes_nothing<R: Everywhere>(margin: f64) {

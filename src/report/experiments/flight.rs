@@ -53,7 +53,14 @@ fn measure(count: usize, integrator: Integrator, repeats: usize) -> anyhow::Resu
     let world = World::<f32s::X8>::from_scene(&scene, Settings::default())?;
     let mut bodies = world.bodies().clone();
     let fields = Forces::gravity().fields();
-    let plan = Plan { integrator, fields: &fields, h_secs: 1.0 / 60.0, substeps: 1, skips: Skips::ALL };
+    let plan = Plan {
+        integrator,
+        fields: &fields,
+        h_secs: 1.0 / 60.0,
+        substeps: 1,
+        skips: Skips::ALL,
+        moving: false,
+    };
     let from = vec![1.0f32; count * BYTES_PER_BODY / 8];
     let mut to = vec![0.0f32; from.len()];
     // Enough calls that the clock's own cost vanishes.

@@ -138,7 +138,14 @@ fn advance<L: Lanes<Elem = f32>>(
 ) -> Box<dyn FnMut() -> usize> {
     let fields = crate::force::Forces::gravity().fields();
     Box::new(move || {
-        let plan = Plan { integrator, fields: &fields, h_secs: 1e-3, substeps: 1, skips: Skips::NONE };
+        let plan = Plan {
+            integrator,
+            fields: &fields,
+            h_secs: 1e-3,
+            substeps: 1,
+            skips: Skips::NONE,
+            moving: false,
+        };
         integrate::fly::<L>(&plan, &mut bodies);
         bodies.live()
     })

@@ -6,7 +6,7 @@
 use glam::DVec2;
 use lamina2d::body::{Bodies, Form};
 use lamina2d::broad::BroadPhase;
-use lamina2d::contact::Key;
+use lamina2d::contact::Code;
 use lamina2d::lanes::{ROW, Real, f32s, f64s};
 use lamina2d::narrow::Narrow;
 use lamina2d::scene::BodySpec;
@@ -69,7 +69,7 @@ pub(crate) fn bodies_of<R: Real>(specs: &[BodySpec]) -> Bodies<R> {
 }
 
 /// A contact down to its bits.
-pub(crate) type ContactBits = (Key, [u64; ROW], [u64; ROW]);
+pub(crate) type ContactBits = ([u32; 2], Code, [u64; ROW], [u64; 4]);
 
 /// The contacts of some pairs, in their order, as bits.
 pub(crate) fn contact_bits<R: Everywhere>(
@@ -81,9 +81,12 @@ pub(crate) fn contact_bits<R: Everywhere>(
     let mut narrow = Narrow::default();
     R::collide(&mut narrow, width, bodies, pairs, margin);
     let found = &narrow.manifolds;
-    let bits = |row: [R; ROW]| row.map(|v| v.to_f64().to_bits());
-    let rows = found.geometry.rows().iter().zip(found.surface.rows());
-    found.keys.iter().zip(rows).map(|(&key, (&g, &s))| (key, bits(g), bits(s))).collect()
+    let bits = |value: R| value.to_f64().to_bits();
+    let contact = |&place: &u32| {
+        let at = place as usize;
+        (found.slots(at), found.code(at), found.geometry()[at].map(bits), found.gaps()[at].map(bits))
+    };
+    found.touching().iter().map(contact).collect()
 }
 
 /// A body as the engine holds it, exact in `f64`.

@@ -1,0 +1,247 @@
+//! `soft`: substepped soft contacts (TGS soft), the default.
+//!
+//! A contact is a damped spring of angular frequency ω = 2π·hz and damping ratio ζ, integrated implicitly:
+//! a₁ = 2ζ + hω, a₂ = hω·a₁, a₃ = 1/(1 + a₂); bias rate ω/a₁, mass scale a₂·a₃. The mass scale softens the diagonal
+//! of K, so that the points of a face are solved together (see [`super::block`]) and no impulse scale is needed.
+//! Recipe of a substep: predict velocities, warm start per body → push out ([`Push`]) → move → relax ([`Relax`]).
+//! Source: Catto, Solver2D (2024); the warm start per body and the moving velocity are ours.
+//!
+//! * **Moving velocity.** A substep moves a body by h·u. The push works on u, the relaxation on the velocity v at
+//!   the substep's end. For schemes of order ≥ 2 an impulse changes u by half of what it changes v by, for Euler
+//!   by all of it ([`crate::integrate::impulse_share`]); so resting bodies neither float nor sink, and a block
+//!   that slides stops where it should.
+//! * **Friction in the relaxation only**: friction that answers the push's velocities pumps tall stacks.
+//! * **Gaps.** A point apart by s > 0 may close by s in a substep, no more. The relaxation leaves points alone that
+//!   carried nothing in the push.
+
+use super::block::{answer, cross, non_negative};
+use super::constraint::{Constraint, Normals, Side};
+use super::stream::{Ends, Visit};
+use crate::lanes::{LaneMask, Lanes};
+
+/// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
+pub const HERTZ_TIMES_SUBSTEP: f64 = 0.25;
+/// Damping ratio ζ.
+pub const DAMPING: f64 = 10.0;
+/// Fastest push out of an overlap: this share of the scene's median radius per step.
+pub const PUSH_CAP: f64 = 0.1;
+
+/// The coefficients of a soft contact for one substep length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softness<L> {
+    /// 1/h.
+    pub per_sec: L,
+    /// Bias velocity per metre of overlap, 1/s.
+    pub bias_rate: L,
+    /// Factor on the effective mass.
+    pub mass_scale: L,
+    /// Fastest push, m/s, negated.
+    pub push_cap: L,
+}
+
+impl<L: Lanes> Softness<L> {
+    /// For substeps of `h_secs`, a frequency of `hertz` and overlaps pushed out at `push_cap` m/s at most.
+    pub fn new(h_secs: f64, hertz: f64, damping: f64, push_cap: f64) -> Self {
+        let omega = 2.0 * std::f64::consts::PI * hertz;
+        let a1 = 2.0 * damping + h_secs * omega;
+        let a2 = h_secs * omega * a1;
+        let a3 = 1.0 / (1.0 + a2);
+        Self {
+            per_sec: L::lit(1.0 / h_secs),
+            bias_rate: L::lit(omega / a1),
+            mass_scale: L::lit(a2 * a3),
+            push_cap: L::lit(-push_cap),
+        }
+    }
+}
+
+/// The pass before bodies move: normal impulses with bias.
+#[derive(Debug)]
+pub struct Push<'a, L: Lanes> {
+    /// Moving velocities u per slot: ux, uy, uω, 1/m.
+    pub rows: &'a mut [[L::Elem; 4]],
+    /// Displacement of the last substep per slot; `None` in a step's first, whose gaps are up to date.
+    pub moved: Option<&'a [[L::Elem; 4]]>,
+    /// Coefficients.
+    pub soft: Softness<L>,
+    /// What an impulse changes u by, over what it changes v by.
+    pub share: L,
+    /// 1/`share`.
+    pub per_share: L,
+}
+
+impl<L: Lanes> Visit<L> for Push<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        if let Some(moved) = self.moved {
+            c.follow(moved, &ends);
+        }
+        let (soft, zero) = (&self.soft, L::zero());
+        let mut normals = Normals::begin(c, &a, &b);
+        let cross = cross(c, &normals);
+        let apart: [L::Mask; POINTS] = std::array::from_fn(|k| zero.lt(c.points[k].separation));
+        let soften: [L; POINTS] = std::array::from_fn(|k| L::select(apart[k], L::one(), soft.mass_scale));
+        let masses = c.points.map(|point| point.mass);
+        // Impulses in units of u: `share` of those of v.
+        let held = c.points.map(|point| point.held * self.share);
+        let answer = answer(cross, masses, held);
+        let wanted: [L; POINTS] = std::array::from_fn(|k| {
+            let point = &c.points[k];
+            let closing = point.separation * soft.per_sec;
+            let pushing = soft.push_cap.max(point.separation * soft.bias_rate);
+            normals.velocity(point) + L::select(apart[k], closing, pushing) - answer[k]
+        });
+        let soft_masses: [L; POINTS] = std::array::from_fn(|k| masses[k] * soften[k]);
+        let next = non_negative(cross, soft_masses, wanted);
+        for k in 0..POINTS {
+            normals.push(c, k, soft_masses[k] * next[k] - masses[k] * held[k]);
+            c.points[k].held = (soften[k] * next[k]) * self.per_share;
+        }
+        normals.end(c, &mut a, &mut b);
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+    }
+}
+
+/// The pass after bodies moved: normal impulses without bias, then friction.
+#[derive(Debug)]
+pub struct Relax<'a, L: Lanes, const FRICTION: bool> {
+    /// Velocities per slot: vx, vy, ω, 1/m.
+    pub rows: &'a mut [[L::Elem; 4]],
+    /// 1/h.
+    pub per_sec: L,
+}
+
+impl<L: Lanes, const FRICTION: bool> Visit<L> for Relax<'_, L, FRICTION> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let zero = L::zero();
+        let mut normals = Normals::begin(c, &a, &b);
+        let cross = cross(c, &normals);
+        let masses = c.points.map(|point| point.mass);
+        let held = c.points.map(|point| point.held);
+        let answer = answer(cross, masses, held);
+        let wanted: [L; POINTS] = std::array::from_fn(|k| {
+            let point = &c.points[k];
+            // A point that carried nothing may go on closing its gap.
+            let closing = zero.max(point.separation) * self.per_sec;
+            normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
+        });
+        let next = non_negative(cross, masses, wanted);
+        for k in 0..POINTS {
+            normals.push(c, k, masses[k] * (next[k] - held[k]));
+            c.points[k].held = next[k];
+        }
+        normals.end(c, &mut a, &mut b);
+        if FRICTION {
+            c.solve_friction(&mut a, &mut b);
+        }
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+    }
+}
+
+/// Approaches noted at a step's beginning, per batch and point, for the bounce at its end.
+#[derive(Clone, Debug)]
+pub struct Bounces<L> {
+    two: Vec<[L; 2]>,
+    one: Vec<[L; 1]>,
+}
+
+impl<L> Default for Bounces<L> {
+    fn default() -> Self {
+        Self { two: Vec::new(), one: Vec::new() }
+    }
+}
+
+impl<L: Lanes> Bounces<L> {
+    /// Makes room for so many batches.
+    pub fn resize(&mut self, [two, one]: [usize; 2]) {
+        self.two.resize(two, [L::zero(); 2]);
+        self.one.resize(one, [L::zero(); 1]);
+    }
+
+    #[inline(always)]
+    fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [L] {
+        if POINTS == 2 { &mut self.two[at] } else { &mut self.one[at] }
+    }
+}
+
+/// Notes for each point that carried nothing in the last step how fast it will part: e times the speed at which
+/// its gap will have closed, √(v² + 2a·s), if its approach is faster than the threshold.
+#[derive(Debug)]
+pub struct NoteApproach<'a, L: Lanes> {
+    /// Velocities at the step's beginning per slot.
+    pub rows: &'a [[L::Elem; 4]],
+    /// Accelerations at the step's beginning per slot: x, y (m/s²), angular.
+    pub accelerations: &'a [[L::Elem; 4]],
+    /// Slower approaches do not bounce, m/s.
+    pub threshold: L,
+    /// Where to.
+    pub bounces: &'a mut Bounces<L>,
+}
+
+impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
+        let sides = |rows: &[[L::Elem; 4]]| (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
+        let (a, b) = sides(self.rows);
+        let (pull_a, pull_b) = sides(self.accelerations);
+        let (speeds, pulls) = (Normals::begin(c, &a, &b), Normals::begin(c, &pull_a, &pull_b));
+        let zero = L::zero();
+        let wanted = self.bounces.at::<POINTS>(at);
+        for (point, wanted) in c.points.iter().zip(wanted) {
+            let speed = speeds.velocity(point);
+            let square = speed * speed - L::lit(2.0) * (pulls.velocity(point) * point.separation);
+            let bounces = speed.lt(-self.threshold) & point.held.le(zero) & zero.lt(point.mass);
+            *wanted = L::select(bounces, c.restitution * zero.max(square).sqrt(), zero);
+        }
+    }
+}
+
+/// The pass that ends a step: points that bounce and touched part with the speed noted.
+#[derive(Debug)]
+pub struct Bounce<'a, L: Lanes> {
+    /// Velocities per slot.
+    pub rows: &'a mut [[L::Elem; 4]],
+    /// Gaps up to this count as touched, metres.
+    pub touch: L,
+    /// Displacement of the last substep per slot.
+    pub moved: &'a [[L::Elem; 4]],
+    /// What was noted.
+    pub bounces: &'a mut Bounces<L>,
+}
+
+impl<L: Lanes> Visit<L> for Bounce<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
+        let wanted = self.bounces.at::<POINTS>(at);
+        let zero = L::zero();
+        if !wanted.iter().any(|speed| zero.lt(*speed).any()) {
+            return;
+        }
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let moved = [L::gather_fours(self.moved, ends.a), L::gather_fours(self.moved, ends.b)];
+        let change = c.change(&moved[0], &moved[1]);
+        let mut given = [zero; POINTS];
+        // Two points push against each other: once more settles their shares.
+        for _ in 0..POINTS {
+            let mut normals = Normals::begin(c, &a, &b);
+            for k in 0..POINTS {
+                let point = c.points[k];
+                let touched = (point.separation + change[k]).le(self.touch);
+                let bounces = zero.lt(wanted[k]) & touched;
+                let lack = wanted[k] - normals.velocity(&point);
+                let total = zero.max(given[k] + point.mass * lack);
+                let impulse = L::select(bounces, total - given[k], zero);
+                given[k] = given[k] + impulse;
+                normals.push(c, k, impulse);
+            }
+            normals.end(c, &mut a, &mut b);
+        }
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+    }
+}

@@ -1,0 +1,307 @@
+//! The stream: all contacts of a step as constraints in batches of lanes, colour by colour.
+//!
+//! | part of a step | reads | writes |
+//! |---|---|---|
+//! | [`Stream::cut`] when contacts come or go | colours | batches |
+//! | [`Stream::begin`] | manifolds looked at, masses | constraints, warm start per body |
+//! | [`Stream::visit`] per pass | constraints, rows | constraints, rows |
+//! | [`Stream::end`] | constraints, last displacements | gaps and impulses of pairs |
+//!
+//! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
+//! changes a row and every loop over lanes is of fixed length.
+
+use super::color::Coloring;
+use super::constraint::{Constraint, Parts, Point, Side};
+use crate::contact::Manifolds;
+use crate::lanes::{Lanes, Real};
+
+/// What a pass does to one batch; `POINTS` is 1 or 2.
+pub trait Visit<L: Lanes> {
+    /// The places of the pairs, and slots of bodies A and B, `WIDTH` each.
+    fn visit<const POINTS: usize>(
+        &mut self,
+        constraint: &mut Constraint<L, POINTS>,
+        ends: Ends<'_>,
+        at: usize,
+    );
+}
+
+/// Whom a batch's lanes join: `WIDTH` entries each.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends<'a> {
+    /// Places of pairs.
+    pub place: &'a [u32],
+    /// Slots of bodies A.
+    pub a: &'a [u32],
+    /// Slots of bodies B.
+    pub b: &'a [u32],
+}
+
+/// Batches of contacts solved with the same number of points.
+#[derive(Clone, Debug)]
+struct Batches<L, const POINTS: usize> {
+    constraints: Vec<Constraint<L, POINTS>>,
+    /// `WIDTH` entries per batch, as are `a` and `b`.
+    place: Vec<u32>,
+    a: Vec<u32>,
+    b: Vec<u32>,
+    /// Which lanes' manifolds were found anew.
+    stale: Vec<u32>,
+}
+
+impl<L, const POINTS: usize> Default for Batches<L, POINTS> {
+    fn default() -> Self {
+        Self { constraints: Vec::new(), place: Vec::new(), a: Vec::new(), b: Vec::new(), stale: Vec::new() }
+    }
+}
+
+impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
+    fn clear(&mut self) {
+        self.place.clear();
+        self.a.clear();
+        self.b.clear();
+    }
+
+    fn len(&self) -> usize {
+        self.place.len() / L::WIDTH
+    }
+
+    /// Appends contacts, at most `width` per batch, and notes where each went.
+    fn push(&mut self, places: &[u32], width: usize, manifolds: &Manifolds<L::Elem>, batch_of: &mut [Home]) {
+        for places in places.chunks(width) {
+            let batch = self.len() as u32;
+            for (lane, &place) in places.iter().enumerate() {
+                let [a, b] = manifolds.slots(place as usize);
+                self.place.push(place);
+                self.a.push(a);
+                self.b.push(b);
+                batch_of[place as usize] = Home { batch, lane: lane as u8, points: POINTS as u8 };
+            }
+            let padded = (batch as usize + 1) * L::WIDTH;
+            self.place.resize(padded, manifolds.padding());
+            self.a.resize(padded, 0);
+            self.b.resize(padded, 0);
+        }
+    }
+
+    fn finish(&mut self, empty: Constraint<L, POINTS>) {
+        let batches = self.len();
+        self.constraints.resize(batches, empty);
+        self.stale.clear();
+        self.stale.resize(batches, ALL_LANES);
+    }
+
+    #[inline(always)]
+    fn ends(&self, at: usize) -> Ends<'_> {
+        let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+        Ends { place: &self.place[lanes.clone()], a: &self.a[lanes.clone()], b: &self.b[lanes] }
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, batches: std::ops::Range<usize>, visitor: &mut impl Visit<L>) {
+        for at in batches {
+            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+            let ends =
+                Ends { place: &self.place[lanes.clone()], a: &self.a[lanes.clone()], b: &self.b[lanes] };
+            visitor.visit(&mut self.constraints[at], ends, at);
+        }
+    }
+
+    fn prepare_stale(&mut self, manifolds: &Manifolds<L::Elem>, matter: &[[L::Elem; 4]]) {
+        for at in 0..self.len() {
+            let stale = std::mem::take(&mut self.stale[at]);
+            if stale != 0 {
+                let old = self.constraints[at];
+                self.constraints[at] = prepared(manifolds, matter, self.ends(at));
+                if stale != ALL_LANES {
+                    self.constraints[at].keep_held(&old, stale);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn prepared<L: Lanes, const POINTS: usize>(
+    manifolds: &Manifolds<L::Elem>,
+    matter: &[[L::Elem; 4]],
+    ends: Ends<'_>,
+) -> Constraint<L, POINTS> {
+    let mut two_points = [L::Elem::ZERO; 16];
+    if POINTS == 2 {
+        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(ends.place) {
+            *two = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
+        }
+    }
+    let masses = |slots: &[u32]| {
+        let [inv_mass, inv_inertia, ..] = L::gather_fours(matter, slots);
+        [inv_mass, inv_inertia]
+    };
+    Constraint::prepare(&Parts {
+        geometry: L::gather_rows(manifolds.geometry(), ends.place),
+        gap: L::gather_fours(manifolds.gaps(), ends.place),
+        impulse: L::gather_fours(manifolds.impulses(), ends.place),
+        matter: [masses(ends.a), masses(ends.b)],
+        two_points: L::zero().lt(L::load(&two_points)),
+    })
+}
+
+/// One colour's batches, as ranges.
+#[derive(Clone, Debug)]
+struct Span {
+    two: std::ops::Range<usize>,
+    one: std::ops::Range<usize>,
+}
+
+/// All contacts in batches; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct Stream<L: Lanes> {
+    two: Batches<L, 2>,
+    one: Batches<L, 1>,
+    spans: Vec<Span>,
+    /// Per place of a pair.
+    batch_of: Vec<Home>,
+}
+
+impl<L: Lanes> Default for Stream<L> {
+    fn default() -> Self {
+        Self { two: Batches::default(), one: Batches::default(), spans: Vec::new(), batch_of: Vec::new() }
+    }
+}
+
+/// Which lane of which batch holds a pair's contact.
+#[derive(Clone, Copy, Debug)]
+struct Home {
+    batch: u32,
+    lane: u8,
+    /// 2 or 1: whose batches; 0 for a pair that does not touch.
+    points: u8,
+}
+
+/// In no batch.
+const NOWHERE: Home = Home { batch: 0, lane: 0, points: 0 };
+/// All lanes of a batch are stale.
+const ALL_LANES: u32 = u32::MAX;
+
+impl<L: Lanes> Stream<L> {
+    /// Cuts the colours into batches of at most `WIDTH` contacts.
+    pub fn cut(&mut self, coloring: &Coloring, manifolds: &Manifolds<L::Elem>) {
+        self.two.clear();
+        self.one.clear();
+        self.spans.clear();
+        self.batch_of.clear();
+        self.batch_of.resize(manifolds.pairs() + 2, NOWHERE);
+        let order = coloring.order();
+        for color in coloring.colors() {
+            let (two, one) = (self.two.len(), self.one.len());
+            self.two.push(&order[color.two.clone()], L::WIDTH, manifolds, &mut self.batch_of);
+            self.one.push(&order[color.one.clone()], L::WIDTH, manifolds, &mut self.batch_of);
+            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        }
+        for &place in &order[coloring.overflow()] {
+            let (two, one) = (self.two.len(), self.one.len());
+            if manifolds.code(place as usize).points() == 2 {
+                self.two.push(&[place], 1, manifolds, &mut self.batch_of);
+            } else {
+                self.one.push(&[place], 1, manifolds, &mut self.batch_of);
+            }
+            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        }
+        let nothing = Parts {
+            geometry: [L::zero(); 8],
+            gap: [L::zero(); 4],
+            impulse: [L::zero(); 4],
+            matter: [[L::zero(); 2]; 2],
+            two_points: L::zero().lt(L::zero()),
+        };
+        self.two.finish(Constraint::prepare(&nothing));
+        self.one.finish(Constraint::prepare(&nothing));
+    }
+
+    /// Notes that the manifold at a place was found anew.
+    #[inline(always)]
+    pub fn touch(&mut self, place: u32) {
+        let home = self.batch_of[place as usize];
+        let stale = match home.points {
+            0 => return,
+            1 => &mut self.one.stale,
+            _ => &mut self.two.stale,
+        };
+        stale[home.batch as usize] |= 1 << home.lane;
+    }
+
+    /// Prepares the batches whose manifolds are new; `matter` has rows 1/m, 1/I, –, – per slot.
+    pub fn begin(&mut self, manifolds: &Manifolds<L::Elem>, matter: &[[L::Elem; 4]]) {
+        self.two.prepare_stale(manifolds, matter);
+        self.one.prepare_stale(manifolds, matter);
+    }
+
+    /// One pass over all contacts: colour by colour, two-point contacts first, the overflow last.
+    #[inline(always)]
+    pub fn visit(&mut self, visitor: &mut impl Visit<L>) {
+        for span in &self.spans {
+            self.two.visit(span.two.clone(), visitor);
+            self.one.visit(span.one.clone(), visitor);
+        }
+    }
+
+    /// Hands gaps and impulses back to the pairs; `moved` has the rows x, y, angle of the last substep's
+    /// displacement per slot, by which the gaps still have to change.
+    pub fn end(&mut self, manifolds: &mut Manifolds<L::Elem>, moved: &[[L::Elem; 4]]) {
+        self.visit(&mut Store { manifolds, moved });
+    }
+
+    /// Batches of two-point and of one-point contacts.
+    pub fn batches(&self) -> [usize; 2] {
+        [self.two.len(), self.one.len()]
+    }
+
+    /// Bytes of constraints and slots a pass streams.
+    pub fn bytes(&self) -> usize {
+        let slots = 8 * L::WIDTH;
+        self.two.len() * (size_of::<Constraint<L, 2>>() + slots)
+            + self.one.len() * (size_of::<Constraint<L, 1>>() + slots)
+    }
+}
+
+struct Store<'a, R: Real> {
+    manifolds: &'a mut Manifolds<R>,
+    moved: &'a [[R; 4]],
+}
+
+impl<L: Lanes> Visit<L> for Store<'_, L::Elem> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        c.follow(self.moved, &ends);
+        let of = |value: fn(&Point<L>) -> L| {
+            [value(&c.points[0]), if POINTS == 2 { value(&c.points[POINTS - 1]) } else { L::zero() }]
+        };
+        let ([s0, s1], [n0, n1]) = (of(|p| p.separation), of(Point::impulse));
+        L::scatter_fours([s0, s1, c.friction, c.restitution], self.manifolds.gaps_mut(), ends.place);
+        L::scatter_fours([n0, n1, c.tangent_impulse, L::zero()], self.manifolds.impulses_mut(), ends.place);
+    }
+}
+
+/// Sums the impulses of the last step per body: what a substep's warm start adds to its velocity.
+#[derive(Debug)]
+pub struct WarmStart<'a, R: Real> {
+    /// Rows vx, vy, w, 1/m per slot.
+    pub rows: &'a mut [[R; 4]],
+    /// Factor on the impulses: this step's substep over the last one's.
+    pub share: R,
+}
+
+impl<L: Lanes> Visit<L> for WarmStart<'_, L::Elem> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let share = L::splat(self.share);
+        for point in &mut c.points {
+            point.held = point.held * share;
+        }
+        c.tangent_impulse = c.tangent_impulse * share;
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        c.apply_accumulated(&mut a, &mut b);
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+    }
+}
