@@ -7,6 +7,7 @@
 pub mod file;
 pub mod mixes;
 pub mod named;
+mod stacks;
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
