@@ -4,6 +4,7 @@
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
 //! [`file`](mod@file) reads them from TOML.
 
+mod driven;
 pub mod file;
 pub mod mixes;
 pub mod named;

@@ -1,8 +1,8 @@
 //! Scenes by name: the table the program, benches and tests share.
 
 use super::mixes::{Mix, determinism, mix};
-use super::stacks;
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
+use super::{driven, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -193,6 +193,55 @@ pub const SCENES: &[SceneInfo] = &[
         default: 4,
         about: "a house of cards of 0.4 m and 2 mm",
         build: |n, _| stacks::cards(n),
+    },
+    SceneInfo {
+        name: "dominoes",
+        takes: Takes::Bodies,
+        default: 30,
+        about: "a row of dominoes, the first one falling",
+        build: |n, _| driven::dominoes(n),
+    },
+    SceneInfo {
+        name: "rain",
+        takes: Takes::Bodies,
+        default: 1000,
+        about: "circles, boxes and polygons falling between two walls",
+        build: driven::rain,
+    },
+    SceneInfo {
+        name: "tumbler",
+        takes: Takes::Bodies,
+        default: 2000,
+        about: "small boxes in a box that turns about its centre",
+        build: |n, _| driven::tumbler(n),
+    },
+    SceneInfo {
+        name: "spinner",
+        takes: Takes::Bodies,
+        default: 2000,
+        about: "circles, boxes and octagons stirred by a long bar",
+        build: driven::spinner,
+    },
+    SceneInfo {
+        name: "bullet",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a circle at 200 m/s against a wall of 0.1 m",
+        build: |_, _| driven::bullet(),
+    },
+    SceneInfo {
+        name: "bullets",
+        takes: Takes::Nothing,
+        default: 3,
+        about: "wedge, sliver and plate at 100 and 200 m/s, each against its wall",
+        build: |_, _| driven::bullets(),
+    },
+    SceneInfo {
+        name: "circles_confined",
+        takes: Takes::Nothing,
+        default: 625,
+        about: "discs packed into a box without gravity, pushing each other about",
+        build: |_, seed| driven::circles_confined(seed),
     },
 ];
 
