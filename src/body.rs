@@ -10,7 +10,7 @@
 //! Cold, 23 B: kind 1, shape form 1, shape start 4, generation 4, filter 12 (category, collides-with,
 //! dynamic), flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
 //! vertices and normals in both frames: 8 rows of 8 (256 B in f32), beside vertex
-//! count 1 and owner 4.
+//! count 1 and owner 4; a driven body's drive 72.
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
 //! number (4 B and a trigonometric call wherever it is used).
 
@@ -20,6 +20,7 @@ mod polygons;
 use std::ops::Range;
 
 use crate::column::Column;
+use crate::drive::{Drive, Drives};
 use crate::lanes::{ROW, Real};
 use crate::scene::{BodyKind, BodySpec};
 use crate::shape::Shape;
@@ -105,6 +106,7 @@ pub struct Bodies<R: Real> {
     generation: Vec<u32>,
     alive: Vec<bool>,
     free: Vec<u32>,
+    drives: Drives,
     inserted: usize,
     live: usize,
     revision: u64,
@@ -145,6 +147,7 @@ impl<R: Real> Bodies<R> {
             generation: Vec::new(),
             alive: Vec::new(),
             free: Vec::new(),
+            drives: Drives::default(),
             inserted: 0,
             live: 0,
             revision: 0,
@@ -222,7 +225,8 @@ impl<R: Real> Bodies<R> {
     ///
     /// # Errors
     /// A shape, mass, density, friction, restitution, pose or velocity that is out of range or not finite
-    /// in this precision; a static body with a velocity. Nothing has changed then.
+    /// in this precision; a static body with a velocity; a pivot of a body that is not kinematic, or beside
+    /// a velocity. Nothing has changed then.
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
         let body = self.inserted;
         let shape = spec.shape.build().map_err(|why| BodyError::Shape { body, why })?;
@@ -272,6 +276,11 @@ impl<R: Real> Bodies<R> {
         if form == Form::Polygon {
             self.shape_start[slot] = self.polygons.insert(&shape, slot as u32);
         }
+        if let Some(pivot) = spec.pivot {
+            let drive = Drive::new(slot, pivot.into(), centroid, turn, spec.angular_velocity);
+            [self.vx[slot], self.vy[slot]] = drive.velocity().map(R::from_f64);
+            self.drives.insert(drive);
+        }
         self.inserted += 1;
         self.live += 1;
         self.revision += 1;
@@ -289,6 +298,7 @@ impl<R: Real> Bodies<R> {
             self.polygons.remove(self.shape_start[slot]);
         }
         self.write_force(slot, [0.0; 3]);
+        self.drives.remove(slot);
         self.make_inert(slot);
         self.generation[slot] += 1;
         // Kept descending, so that the lowest hole is filled first whatever the order of removals.
@@ -349,6 +359,16 @@ impl<R: Real> Bodies<R> {
         Ok(())
     }
 
+    /// Gives the bodies with a pivot the velocities of a step of `dt_secs`; see [`crate::drive`].
+    pub fn drive(&mut self, dt_secs: f64) {
+        if !self.drives.is_empty() {
+            // Out for the while, so that it may write to the columns beside it.
+            let mut drives = std::mem::take(&mut self.drives);
+            drives.apply(self, dt_secs);
+            self.drives = drives;
+        }
+    }
+
     /// Turns the vertices and normals of all polygons into world axes.
     pub fn refresh_polygons(&mut self) {
         let Polygons { body, world, owner, .. } = &mut self.polygons;
@@ -403,7 +423,7 @@ impl<R: Real> Bodies<R> {
         let force = self.force.iter().flatten().map(Column::bytes).sum::<usize>();
         let rows = self.polygons.owner.len() * (2 * size_of::<HullRows<R>>() + 5);
         let cold = self.len() * (2 + 2 * 4 + size_of::<Filter>() + 1);
-        columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold
+        columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold + self.drives.bytes()
     }
 
     fn grow(&mut self) -> usize {

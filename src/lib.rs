@@ -24,12 +24,13 @@
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`] | the stages; they never import each other |
-//! | [`contact`], [`force`], [`body`], [`shape`] | manifolds and carried impulses; fields; columns; shapes |
+//! | [`contact`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
 //! # One step
 //! | stage | reads | writes |
 //! |---|---|---|
+//! | drive | pose of bodies with a pivot | their velocity |
 //! | broad | position, bounding radius, attitude of long bodies | candidate pairs, a < b, in order |
 //! | narrow | pose, shape, pairs | manifolds, polygons' world rows |
 //! | prepare | manifolds, last impulses | carried impulses, colours, batches |
@@ -72,6 +73,7 @@ pub mod broad;
 pub mod clock;
 pub mod column;
 pub mod contact;
+pub mod drive;
 pub mod force;
 pub mod integrate;
 pub mod lanes;

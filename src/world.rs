@@ -137,6 +137,7 @@ impl<L: Lanes> World<L> {
             return Err(StepError::Dt(dt_secs));
         }
         self.inspect();
+        self.bodies.drive(dt_secs);
         self.steps += 1;
         let mut clock = Instant::now();
         let mut lap = |times: &mut StageTimes, stage| times.lap(stage, &mut clock);

@@ -1,5 +1,7 @@
 //! What a body is refused for: each field checked where it enters, named with its value.
 
+use glam::DVec2;
+
 use crate::lanes::Real;
 use crate::scene::{BodyKind, BodySpec};
 use crate::shape::{Shape, ShapeError};
@@ -57,6 +59,24 @@ pub enum BodyError {
         /// What was given.
         value: f64,
     },
+    /// Only a kinematic body goes where a pivot takes it.
+    #[error("body {body}: only a kinematic body goes round a pivot, this one is {kind}; make it kinematic")]
+    PivotNotKinematic {
+        /// Its number.
+        body: usize,
+        /// What it is.
+        kind: &'static str,
+    },
+    /// The pivot and the angular velocity say how the body moves.
+    #[error(
+        "body {body}: its pivot and angular_velocity give its velocity; leave out velocity, got {value:?}"
+    )]
+    PivotAndVelocity {
+        /// Its number.
+        body: usize,
+        /// What was given.
+        value: f64,
+    },
     /// No living body has this id.
     #[error("no living body has the id of slot {slot}, generation {generation}")]
     Stale {
@@ -93,13 +113,6 @@ pub(super) struct Checker {
 impl Checker {
     pub(super) fn check<R: Real>(&self, spec: &BodySpec, shape: &Shape) -> Result<InverseMass, BodyError> {
         let body = self.body;
-        let finite = |field, value: f64| {
-            if R::from_f64(value).is_finite() {
-                Ok(())
-            } else {
-                Err(BodyError::NonFinite { body, field, value })
-            }
-        };
         let within = |field, value: f64, range, good: bool| {
             if good { Ok(()) } else { Err(BodyError::OutOfRange { body, field, range, value }) }
         };
@@ -115,20 +128,14 @@ impl Checker {
             ("torque", spec.torque),
             ("friction", spec.friction),
         ] {
-            finite(field, value)?;
+            self.finite::<R>(field, value)?;
         }
-        // Beyond this a squared distance would overflow, or meet the padding.
-        let reach = R::FAR.to_f64() * 1e-3;
         for value in spec.position {
-            within(
-                "position",
-                value,
-                "less than 1e15 (f32) or 1e97 (f64) from the origin",
-                value.abs() < reach,
-            )?;
+            self.near::<R>("position", value)?;
         }
         let radius = shape.bounding_radius();
-        within("shape size", radius, "less than 1e15 (f32) or 1e97 (f64) metres", radius < reach)?;
+        let small = radius < R::FAR.to_f64() * 1e-3;
+        within("shape size", radius, "less than 1e15 (f32) or 1e97 (f64) metres", small)?;
         within("friction", spec.friction, "at least 0", spec.friction >= 0.0)?;
         within("restitution", spec.restitution, "0 to 1", (0.0..=1.0).contains(&spec.restitution))?;
         if spec.kind == BodyKind::Static {
@@ -138,7 +145,49 @@ impl Checker {
                 return Err(BodyError::StaticMoves { body, field, value });
             }
         }
+        if let Some(pivot) = spec.pivot {
+            self.pivot::<R>(spec, shape, pivot)?;
+        }
         self.inverse_mass::<R>(spec, shape)
+    }
+
+    fn pivot<R: Real>(&self, spec: &BodySpec, shape: &Shape, pivot: [f64; 2]) -> Result<(), BodyError> {
+        let body = self.body;
+        let kind = match spec.kind {
+            BodyKind::Kinematic => None,
+            BodyKind::Static => Some("static"),
+            BodyKind::Dynamic => Some("dynamic"),
+        };
+        if let Some(kind) = kind {
+            return Err(BodyError::PivotNotKinematic { body, kind });
+        }
+        for value in pivot {
+            self.finite::<R>("pivot", value)?;
+            self.near::<R>("pivot", value)?;
+        }
+        if let Some(&value) = spec.velocity.iter().find(|v| **v != 0.0) {
+            return Err(BodyError::PivotAndVelocity { body, value });
+        }
+        let arm = DVec2::from(spec.position).distance(pivot.into());
+        let reach = arm + shape.mass_properties().centroid.length();
+        self.finite::<R>("velocity round the pivot", reach * spec.angular_velocity)
+    }
+
+    fn finite<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
+        if R::from_f64(value).is_finite() {
+            Ok(())
+        } else {
+            Err(BodyError::NonFinite { body: self.body, field, value })
+        }
+    }
+
+    /// Further out a squared distance would overflow, or meet the padding.
+    fn near<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
+        if value.abs() < R::FAR.to_f64() * 1e-3 {
+            return Ok(());
+        }
+        let range = "less than 1e15 (f32) or 1e97 (f64) from the origin";
+        Err(BodyError::OutOfRange { body: self.body, field, range, value })
     }
 
     fn inverse_mass<R: Real>(&self, spec: &BodySpec, shape: &Shape) -> Result<InverseMass, BodyError> {

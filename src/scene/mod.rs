@@ -4,9 +4,11 @@
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
 //! [`file`](mod@file) reads them from TOML.
 
+mod driven;
 pub mod file;
 pub mod mixes;
 pub mod named;
+mod stacks;
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -112,6 +114,10 @@ pub struct BodySpec {
     /// rad/s, counter-clockwise.
     #[serde(default)]
     pub angular_velocity: f64,
+    /// Metres: round this point a kinematic body goes with its angular velocity, its attitude turning along;
+    /// its velocity follows from that and is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "pair::optional")]
+    pub pivot: Option<[f64; 2]>,
     /// Kilograms; excludes `density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
@@ -148,6 +154,7 @@ impl BodySpec {
             angle: 0.0,
             velocity: [0.0; 2],
             angular_velocity: 0.0,
+            pivot: None,
             mass: None,
             density: None,
             friction: half(),
@@ -163,6 +170,12 @@ impl BodySpec {
     #[must_use]
     pub fn fixed(self) -> Self {
         Self { kind: BodyKind::Static, ..self }
+    }
+
+    /// The same body, kinematic, going round `pivot` (metres) with its angular velocity.
+    #[must_use]
+    pub fn about(self, pivot: [f64; 2]) -> Self {
+        Self { kind: BodyKind::Kinematic, pivot: Some(pivot), ..self }
     }
 
     /// The same body with restitution and friction.

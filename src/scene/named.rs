@@ -2,6 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
+use super::{driven, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -15,6 +16,14 @@ pub enum Takes {
     Pairs,
     /// A number of boxes on top of each other.
     Height,
+    /// A number of boxes side by side in a pyramid's lowest row.
+    Base,
+    /// A number of pyramids of 55 boxes.
+    Pyramids,
+    /// A mass, in masses of the body that carries it.
+    Ratio,
+    /// A number of storeys of a house of cards.
+    Levels,
 }
 
 impl Takes {
@@ -25,6 +34,34 @@ impl Takes {
             Self::Bodies => "bodies",
             Self::Pairs => "pairs",
             Self::Height => "boxes",
+            Self::Base => "base",
+            Self::Pyramids => "pyramids",
+            Self::Ratio => "ratio",
+            Self::Levels => "levels",
+        }
+    }
+
+    /// The largest it may be: where it is not itself a number of bodies, what makes [`MAX_BODIES`] of them.
+    pub const fn most(self) -> usize {
+        match self {
+            Self::Nothing | Self::Bodies | Self::Pairs | Self::Height | Self::Ratio => MAX_BODIES,
+            Self::Base => 1413,
+            Self::Pyramids => 18_000,
+            Self::Levels => 816,
+        }
+    }
+
+    /// What a scene takes after the slash, in words, and what it says to a number out of range.
+    const fn wanted(self) -> [&'static str; 2] {
+        match self {
+            Self::Nothing => ["nothing", "cannot be chosen"],
+            Self::Bodies => ["a number of bodies (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Pairs => ["a number of pairs (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Height => ["a number of boxes (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Base => ["a number of boxes in the lowest row (1 to 1413)", "must be 1 to 1413"],
+            Self::Pyramids => ["a number of pyramids (1 to 18000)", "must be 1 to 18000"],
+            Self::Ratio => ["a ratio of masses (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Levels => ["a number of levels (1 to 816)", "must be 1 to 816"],
         }
     }
 }
@@ -101,6 +138,111 @@ pub const SCENES: &[SceneInfo] = &[
         about: "boxes of 1 m resting on each other",
         build: |n, _| stack(n),
     },
+    SceneInfo {
+        name: "pyramid",
+        takes: Takes::Base,
+        default: 100,
+        about: "a pyramid of boxes of 1 m, each resting on two",
+        build: |n, _| stacks::pyramid(n),
+    },
+    SceneInfo {
+        name: "pyramids",
+        takes: Takes::Pyramids,
+        default: 100,
+        about: "pyramids of 55 boxes side by side on several floors",
+        build: |n, _| stacks::pyramids(n),
+    },
+    SceneInfo {
+        name: "columns",
+        takes: Takes::Height,
+        default: 40,
+        about: "a column of boxes, 1 cm to the right and to the left in turn",
+        build: |n, _| stacks::columns(n),
+    },
+    SceneInfo {
+        name: "heavy",
+        takes: Takes::Ratio,
+        default: 100,
+        about: "a box on a box of the same size and a fraction of its mass",
+        build: |n, _| stacks::heavy(n),
+    },
+    SceneInfo {
+        name: "sizes",
+        takes: Takes::Nothing,
+        default: 6,
+        about: "boxes of 1 to 32 m on each other, the smallest at the bottom",
+        build: |_, _| stacks::sizes(),
+    },
+    SceneInfo {
+        name: "two_feet",
+        takes: Takes::Nothing,
+        default: 3,
+        about: "a box of 20 m on two boxes of 1 m",
+        build: |_, _| stacks::two_feet(),
+    },
+    SceneInfo {
+        name: "arch",
+        takes: Takes::Nothing,
+        default: 21,
+        about: "a semicircular arch of 17 wedges with four boxes on its keystone",
+        build: |_, _| stacks::arch(),
+    },
+    SceneInfo {
+        name: "cards",
+        takes: Takes::Levels,
+        default: 4,
+        about: "a house of cards of 0.4 m and 2 mm",
+        build: |n, _| stacks::cards(n),
+    },
+    SceneInfo {
+        name: "dominoes",
+        takes: Takes::Bodies,
+        default: 30,
+        about: "a row of dominoes, the first one falling",
+        build: |n, _| driven::dominoes(n),
+    },
+    SceneInfo {
+        name: "rain",
+        takes: Takes::Bodies,
+        default: 1000,
+        about: "circles, boxes and polygons falling between two walls",
+        build: driven::rain,
+    },
+    SceneInfo {
+        name: "tumbler",
+        takes: Takes::Bodies,
+        default: 2000,
+        about: "small boxes in a box that turns about its centre",
+        build: |n, _| driven::tumbler(n),
+    },
+    SceneInfo {
+        name: "spinner",
+        takes: Takes::Bodies,
+        default: 2000,
+        about: "circles, boxes and octagons stirred by a long bar",
+        build: driven::spinner,
+    },
+    SceneInfo {
+        name: "bullet",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a circle at 200 m/s against a wall of 0.1 m",
+        build: |_, _| driven::bullet(),
+    },
+    SceneInfo {
+        name: "bullets",
+        takes: Takes::Nothing,
+        default: 3,
+        about: "wedge, sliver and plate at 100 and 200 m/s, each against its wall",
+        build: |_, _| driven::bullets(),
+    },
+    SceneInfo {
+        name: "circles_confined",
+        takes: Takes::Nothing,
+        default: 625,
+        about: "discs packed into a box without gravity, pushing each other about",
+        build: |_, seed| driven::circles_confined(seed),
+    },
 ];
 
 /// The largest number of bodies a named scene is built with.
@@ -109,7 +251,7 @@ pub const MAX_BODIES: usize = 1_000_000;
 /// The scene `name` or `name/parameter`; `bodies` overrides the parameter.
 ///
 /// # Errors
-/// An unknown name, a parameter that is not a number from 1 to [`MAX_BODIES`], a parameter for a scene
+/// An unknown name, a parameter that is not a number from 1 to [`Takes::most`], a parameter for a scene
 /// that takes none.
 pub fn by_name(name: &str, bodies: Option<usize>, seed: u64) -> Result<Scene, SceneError> {
     let (base, parameter) = match name.split_once('/') {
@@ -120,41 +262,27 @@ pub fn by_name(name: &str, bodies: Option<usize>, seed: u64) -> Result<Scene, Sc
         name: name.to_owned(),
         choices: SCENES.iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
     })?;
-    let takes = match info.takes {
-        Takes::Nothing => "nothing",
-        Takes::Bodies => "a number of bodies (1 to 1000000)",
-        Takes::Pairs => "a number of pairs (1 to 1000000)",
-        Takes::Height => "a number of boxes (1 to 1000000)",
-    };
+    let [takes, problem] = info.takes.wanted();
+    let good = |n: &usize| info.takes != Takes::Nothing && (1..=info.takes.most()).contains(n);
     let parsed = parameter
         .map(|given| {
-            let number = given.parse().ok().filter(|n| (1..=MAX_BODIES).contains(n));
-            number.filter(|_| info.takes != Takes::Nothing).ok_or_else(|| SceneError::Parameter {
+            given.parse().ok().filter(good).ok_or_else(|| SceneError::Parameter {
                 scene: base.to_owned(),
                 takes,
                 given: given.to_owned(),
             })
         })
         .transpose()?;
-    if let Some(given) = bodies {
-        let problem = match info.takes {
-            Takes::Nothing => Some("cannot be chosen"),
-            _ if !(1..=MAX_BODIES).contains(&given) => Some("must be 1 to 1000000"),
-            _ => None,
-        };
-        if let Some(problem) = problem {
-            return Err(SceneError::Bodies { scene: base.to_owned(), problem, given });
-        }
+    if let Some(given) = bodies.filter(|n| !good(n)) {
+        return Err(SceneError::Bodies { scene: base.to_owned(), problem, given });
     }
     let count = bodies.or(parsed).unwrap_or(info.default);
-    let mut scene = (info.build)(count, seed);
-    if info.takes != Takes::Nothing {
-        scene.name = format!("{base}/{count}");
-    }
-    Ok(scene)
+    let name = if info.takes == Takes::Nothing { base.to_owned() } else { format!("{base}/{count}") };
+    Ok(Scene { name, ..(info.build)(count, seed) })
 }
 
-fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u64) -> Scene {
+/// A scene with steps of 1/60 s; its name comes from the table.
+pub(super) fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u64) -> Scene {
     Scene {
         name: String::new(),
         about: about.to_owned(),
