@@ -24,6 +24,7 @@ use crate::drive::{Drive, Drives};
 use crate::lanes::{ROW, Real};
 use crate::scene::{BodyKind, BodySpec};
 use crate::shape::Shape;
+use crate::vec2::Rot;
 
 pub use check::BodyError;
 use check::Checker;
@@ -245,7 +246,9 @@ impl<R: Real> Bodies<R> {
             Shape::Box { half } => ([half.x, half.y], glam::DVec2::ZERO),
             Shape::Polygon(p) => ([0.0, 0.0], p.centroid_given()),
         };
-        let turn = glam::DVec2::from_angle(spec.angle);
+        // Our own sine and cosine: the same bits on every platform.
+        let turn = Rot::<f64>::from_angle(spec.angle % std::f64::consts::TAU);
+        let turn = glam::DVec2::new(turn.c, turn.s);
         let centroid = glam::DVec2::from(spec.position) + turn.rotate(offset);
         for (column, value) in [
             (&mut self.x, centroid.x),

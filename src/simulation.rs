@@ -36,7 +36,7 @@ pub trait Simulation: Send {
     fn bodies(&self) -> usize;
     /// The states of living bodies, in slot order.
     fn states(&self) -> Vec<BodyState>;
-    /// The contacts found at the beginning of the last step.
+    /// The contacts found at the beginning of the last step, with their gaps and impulses at its end.
     fn contacts(&self) -> Vec<Contact>;
     /// What the last step counted.
     fn counts(&self) -> Counts;

@@ -11,6 +11,7 @@ use rand_pcg::Pcg32;
 
 use super::{BodySpec, Scene, ShapeSpec};
 use crate::force::Forces;
+use crate::vec2::Rot;
 
 /// Pixels per metre in the thesis.
 pub const PX_PER_M: f64 = 25.0;
@@ -154,7 +155,10 @@ fn random_hexagon(random: &mut Pcg32) -> ShapeSpec {
         let outline: Vec<[f64; 2]> = (0..6)
             .map(|k| {
                 let angle = (f64::from(k) * 60.0 + random.random_range(-30.0..30.0_f64)).to_radians();
-                [radius * angle.cos(), radius * angle.sin()]
+                {
+                    let turn = Rot::<f64>::from_angle(angle);
+                    [radius * turn.c, radius * turn.s]
+                }
             })
             .collect();
         let apart = (0..6).all(|k| {

@@ -107,14 +107,14 @@ fn parameters_beyond_a_million_bodies_are_refused_by_scene_and_limit() {
     assert_eq!(message, "scene 'arch' takes nothing after the slash, got '3'");
 }
 
-/// Each box of a pyramid rests on two, with both points of either face at distance 0.
+/// Each box of a pyramid rests on two, with both points of either face; gaps are those a step later.
 #[test]
 fn rows_of_a_pyramid_touch() {
     let world = begun("pyramid/6");
     let touching: Vec<_> = world.contacts().into_iter().filter(|c| c.normal[1].abs() > 0.5).collect();
     assert_eq!(touching.len(), 6 + 2 * 15, "six on the floor, fifteen on two each");
     for contact in &touching {
-        assert!(contact.points.len() == 2 && contact.points.iter().all(|p| p.separation == 0.0));
+        assert!(contact.points.len() == 2 && contact.points.iter().all(|p| p.separation.abs() < 1e-4));
     }
 }
 
