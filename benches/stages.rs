@@ -341,7 +341,7 @@ fn check_colors(pile: &Pile) {
     let mut contacts_seen = vec![false; manifolds.pairs()];
     for color in coloring.colors() {
         let mut bodies_seen = vec![false; pile.bodies.len()];
-        for &place in coloring.order()[color.two.start..color.one.end].iter() {
+        for &place in &coloring.order()[color.two.start..color.one.end] {
             let again = std::mem::replace(&mut contacts_seen[place as usize], true);
             assert!(!again, "the contact at {place} has two colours");
             for slot in manifolds.slots(place as usize).map(|slot| slot as usize) {
@@ -395,8 +395,9 @@ impl Pass<'_> {
             let (plan, bodies) = (self.plan(), &self.pile.bodies);
             let mut solving = self.pile.solving::<L>();
             memory.motion = self.pile.motion();
-            solving.begin(&self.task(&plan), bodies, &mut memory.motion);
-            integrate::predict::<L>(&plan, bodies, &mut memory.motion, true);
+            let mut manifolds = self.pile.narrow.manifolds.clone();
+            let warm = solving.begin(&self.task(&plan), bodies, &mut manifolds, &mut memory.motion);
+            integrate::predict::<L>(&plan, bodies, &mut memory.motion, warm);
             memory.fresh = memory.motion.clone();
             memory.untouched = Box::new(solving.clone());
             memory.solving = Box::new(solving);

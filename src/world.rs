@@ -6,7 +6,7 @@ use crate::body::{Bodies, BodyError, BodyId};
 use crate::broad::BroadPhase;
 use crate::contact::{Contact, Manifolds};
 use crate::force::{Field, Forces};
-use crate::integrate::{self, Motion, Plan};
+use crate::integrate::{self, Motion, Plan, Warm};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::{Narrow, Stirred};
@@ -149,17 +149,20 @@ impl<L: Lanes> World<L> {
         let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, keep);
         lap(&mut self.times, Stage::Broad);
 
-        if !found.kept {
-            self.narrow.deal(&self.bodies, self.broad.pairs());
-        }
-        let reuse = skips.has(Skip::ManifoldReuse) && !std::mem::take(&mut self.disturbed);
-        let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
-        let looked_at = self.narrow.choose(stirred);
-        if looked_at > 0 {
+        let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
+        let still = found.kept && reuse && !self.motion.any_stirred;
+        let (mut looked_at, mut changed) = (0, false);
+        if !still {
+            self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+            if !found.kept {
+                self.narrow.deal(&self.bodies, self.broad.pairs());
+            }
+            let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
+            looked_at = self.narrow.choose(stirred);
             self.bodies.refresh_polygons();
             self.narrow.collide::<L>(&self.bodies, margin);
+            changed = self.narrow.manifolds.refresh();
         }
-        let changed = self.narrow.manifolds.refresh();
         lap(&mut self.times, Stage::Narrow);
 
         let (fields, moving) = (&self.fields[..], solve::pushes(solver));
@@ -174,12 +177,15 @@ impl<L: Lanes> World<L> {
         } else {
             let task = Task { solver, traits, dt_secs, plan: &plan };
             let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-            solving.prepare(bodies, &mut self.narrow, changed, motion);
-            solving.begin(&task, bodies, motion);
+            if !still {
+                solving.prepare(bodies, &mut self.narrow, changed, motion);
+            }
+            let mut warm = solving.begin(&task, bodies, &mut self.narrow.manifolds, motion);
             lap(&mut self.times, Stage::Prepare);
             for substep in 0..substeps {
                 let first = substep == 0;
-                skipped = integrate::predict::<L>(&plan, bodies, motion, first);
+                skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
+                warm = Warm::Onward;
                 lap(&mut self.times, Stage::Integrate);
                 solving.solve(&task, motion, first);
                 lap(&mut self.times, Stage::Solve);
@@ -192,23 +198,15 @@ impl<L: Lanes> World<L> {
                 solving.settle(&task, motion);
                 lap(&mut self.times, Stage::Solve);
             }
-            solving.end(&task, &mut self.narrow.manifolds, motion);
+            solving.end(&task, motion);
             lap(&mut self.times, Stage::Solve);
-            integrate::finish::<L>(&mut self.bodies, motion);
+            integrate::finish::<L>(&mut self.bodies, motion, task.bounce_threshold());
             lap(&mut self.times, Stage::Integrate);
         }
 
-        let reused = self.narrow.manifolds.pairs() - looked_at;
-        self.counts = Counts::of(
-            found,
-            reused,
-            &self.narrow.manifolds,
-            free_flight,
-            skipped,
-            &self.bodies,
-            self.traits,
-            skips,
-        );
+        skipped.manifolds = (self.narrow.manifolds.pairs() - looked_at) as u64;
+        self.counts =
+            Counts::of(found, &self.narrow.manifolds, free_flight, skipped, &self.bodies, self.traits, skips);
         self.times.steps += 1;
         self.check_finite(finite)?;
         lap(&mut self.times, Stage::Measure);
@@ -223,6 +221,7 @@ impl<L: Lanes> World<L> {
         }
         if self.inspected.is_none_or(|(_, removals)| removals != seen.1) {
             self.narrow.manifolds.forget();
+            self.solving.forget();
             self.motion.forget_drift();
         }
         self.inspected = Some(seen);
@@ -239,6 +238,7 @@ impl<L: Lanes> World<L> {
             gravity: gx.hypot(gy),
         };
         self.motion.resize(&self.bodies);
+        self.motion.swift = true;
         self.disturbed = true;
     }
 
@@ -282,6 +282,7 @@ impl<L: Lanes> World<L> {
     /// # Errors
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
+        self.motion.swift = true;
         self.bodies.apply_impulse(id, linear, angular)
     }
 
@@ -291,7 +292,7 @@ impl<L: Lanes> World<L> {
     }
     /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`].
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
-        self.disturbed = true;
+        (self.disturbed, self.motion.swift) = (true, true);
         &mut self.bodies
     }
     /// The fields.
@@ -302,13 +303,15 @@ impl<L: Lanes> World<L> {
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
-    /// The contacts the last step found at its beginning.
+    /// The contacts the last step found at its beginning; gaps and impulses are those of the last time manifolds
+    /// were found anew, see [`World::contacts`].
     pub fn manifolds(&self) -> &Manifolds<L::Elem> {
         &self.narrow.manifolds
     }
-    /// Those contacts, spelled out.
+    /// Those contacts, spelled out, with the gaps and impulses of the step's end.
     pub fn contacts(&self) -> Vec<Contact> {
-        (0..self.manifolds().len()).map(|k| self.manifolds().contact(k)).collect()
+        let manifolds = self.solving.brought_up_to_date(self.manifolds(), &self.motion);
+        (0..manifolds.len()).map(|k| manifolds.contact(k)).collect()
     }
     /// Colours and constraints of the last step.
     pub fn solving(&self) -> &Solving<L> {

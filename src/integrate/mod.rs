@@ -136,6 +136,22 @@ pub struct Motion<R: Real> {
     drift: Column<R>,
     /// Slots of bodies whose manifolds are to be found anew.
     pub stirred: Vec<bool>,
+    /// Is there one?
+    pub any_stirred: bool,
+    /// May two bodies meet faster than the bounce threshold?
+    pub swift: bool,
+}
+
+/// Where a step's warm start is found before its first substep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Warm {
+    /// The step goes on: rows hold velocities, and what contacts changed them by since the last prediction is
+    /// the warm start.
+    Onward,
+    /// A step begins as the last one ended: like [`Warm::Onward`], displacements start at 0.
+    Carried,
+    /// A step begins and rows hold what was summed over contacts.
+    Summed,
 }
 
 impl<R: Real> Default for Motion<R> {
@@ -152,6 +168,8 @@ impl<R: Real> Default for Motion<R> {
             acceleration: zeros(),
             drift: zeros(),
             stirred: Vec::new(),
+            any_stirred: true,
+            swift: true,
         }
     }
 }
@@ -232,6 +250,8 @@ pub struct Skipped {
     pub closed_form: u64,
     /// Bodies whose attitude was not touched.
     pub rotation: u64,
+    /// Pairs that kept their manifold.
+    pub manifolds: u64,
 }
 
 /// How smooth motion is to be advanced.
@@ -292,15 +312,15 @@ pub fn fly<L: Lanes>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L::Elem>) -> 
 }
 
 /// One substep's prediction: velocities and displacements as if nothing touched, and the solver's rows with
-/// the warm start applied. `first`: the step begins, and the rows hold what the warm start adds.
+/// the warm start applied.
 pub fn predict<L: Lanes>(
     plan: &Plan<'_, L::Elem>,
     bodies: &Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
-    first: bool,
+    start: Warm,
 ) -> Skipped {
-    with_scheme!(plan, predict_with(plan, bodies, motion, first));
-    Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, rotation: 0 }
+    with_scheme!(plan, predict_with(plan, bodies, motion, start));
+    Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, ..Skipped::default() }
 }
 
 /// The block of a column that starts at lane value `at`.
@@ -379,7 +399,7 @@ fn predict_with<L: Lanes, S: Scheme>(
     plan: &Plan<'_, L::Elem>,
     bodies: &Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
-    first: bool,
+    from: Warm,
 ) {
     let step = Step::new(plan.h_secs);
     let per_h = L::lit(1.0 / plan.h_secs);
@@ -391,20 +411,24 @@ fn predict_with<L: Lanes, S: Scheme>(
         for i in 0..BLOCK {
             let at = start + i;
             let [px, py, pw, _] = load_four::<L>(&motion.velocity, at);
-            if first {
-                warm[i] = [px, py, pw];
-                state[i] = [&bodies.vx, &bodies.vy, &bodies.w].map(|column| column.lanes::<L>()[at]);
-            } else {
-                state[i] = [px, py, pw];
-                let free = motion.free.each_ref().map(|column| column.lanes::<L>()[at]);
-                warm[i] = std::array::from_fn(|k| state[i][k] - free[k]);
+            (state[i], warm[i]) = ([px, py, pw], [px, py, pw]);
+            if from != Warm::Summed {
+                for k in 0..3 {
+                    warm[i][k] = warm[i][k] - motion.free[k].lanes::<L>()[at];
+                }
+            }
+            if from == Warm::Onward {
                 let last = load_four::<L>(&motion.moved, at);
-                total[i] = std::array::from_fn(|k| motion.total[k].lanes::<L>()[at] + last[k]);
+                for k in 0..3 {
+                    total[i][k] = motion.total[k].lanes::<L>()[at] + last[k];
+                }
+            } else {
+                state[i] = [bodies.vx.lanes()[at], bodies.vy.lanes()[at], bodies.w.lanes()[at]];
             }
         }
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
-        let v = state.map(|[x, y, _]| Vec2::new(x, y));
+        let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
         let matter = matter(bodies, start);
         let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
@@ -413,14 +437,15 @@ fn predict_with<L: Lanes, S: Scheme>(
             let (turn, spin) = S::spin(step, state[i][2], alpha.map_or(L::zero(), |a| a[i]));
             let free = [next.velocity[i].x, next.velocity[i].y, spin];
             let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
-            let row: [L; 3] = std::array::from_fn(|k| {
+            let mut row = [matter.inv_mass[i]; 4];
+            for k in 0..3 {
                 motion.free[k].lanes_mut::<L>()[at] = free[k];
                 motion.ahead[k].lanes_mut::<L>()[at] = ahead[k];
                 motion.total[k].lanes_mut::<L>()[at] = total[i][k];
                 let base = if plan.moving { ahead[k] * per_h } else { free[k] };
-                base + warm[i][k] * share
-            });
-            store_four::<L>(&mut motion.velocity, at, [row[0], row[1], row[2], matter.inv_mass[i]]);
+                row[k] = base + warm[i][k] * share;
+            }
+            store_four::<L>(&mut motion.velocity, at, row);
         }
     }
 }
@@ -459,9 +484,11 @@ pub fn advance<L: Lanes>(
 pub const STIR: f64 = 4e-3;
 
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
-/// have gone further than [`STIR`] of their radius since they last did are noted as stirred.
-pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>) {
-    let bound = L::lit(STIR);
+/// have gone further than [`STIR`] of their radius since they last did are noted as stirred. `swift`: a speed, m/s,
+/// that no two bodies' points reach together while no body's reaches half of it.
+pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>, swift: f64) {
+    let (bound, half_swift) = (L::lit(STIR), L::lit(0.5 * swift));
+    let (mut any_stirred, mut any_swift) = (0, 0);
     for start in block_starts::<L>(bodies.len()) {
         let mut angle = [L::zero(); BLOCK];
         for i in 0..BLOCK {
@@ -478,16 +505,19 @@ pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Ele
             angle[i] = moved[2];
             let radius = bodies.radius.lanes::<L>()[at];
             let path = (moved[0].abs() + moved[1].abs()) + radius * moved[2].abs();
+            any_swift |= half_swift.le((vx.abs() + vy.abs()) + radius * w.abs()).bits();
             let drift = motion.drift.lanes::<L>()[at] + path;
             let stirs = (bound * radius).lt(drift);
             motion.drift.lanes_mut::<L>()[at] = L::select(stirs, L::zero(), drift);
             let bits = stirs.bits();
+            any_stirred |= bits;
             for (lane, stirred) in motion.stirred[at * L::WIDTH..(at + 1) * L::WIDTH].iter_mut().enumerate() {
                 *stirred = bits >> lane & 1 == 1;
             }
         }
         turn_block(bodies, start, &angle);
     }
+    (motion.any_stirred, motion.swift) = (any_stirred != 0, any_swift != 0);
 }
 
 #[inline(always)]

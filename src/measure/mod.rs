@@ -99,7 +99,6 @@ pub struct Counts {
 impl Counts {
     pub(crate) fn of<R: Real>(
         found: BroadCounts,
-        reused: usize,
         manifolds: &Manifolds<R>,
         free_flight: bool,
         skipped: Skipped,
@@ -115,7 +114,7 @@ impl Counts {
         per_skip[Skip::Rotation as usize] = skipped.rotation;
         per_skip[Skip::FreeFlight as usize] = if free_flight { bodies.live() as u64 } else { 0 };
         per_skip[Skip::PairList as usize] = if found.kept { bodies.live() as u64 } else { 0 };
-        per_skip[Skip::ManifoldReuse as usize] = reused as u64;
+        per_skip[Skip::ManifoldReuse as usize] = skipped.manifolds;
         per_skip[Skip::Friction as usize] = spared(needed.friction);
         per_skip[Skip::Restitution as usize] = spared(needed.restitution);
         Self { candidates: found.candidates, pairs: found.pairs, contacts, skipped: per_skip }

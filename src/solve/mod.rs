@@ -14,7 +14,7 @@ pub mod stream;
 
 use crate::body::Bodies;
 use crate::contact::Manifolds;
-use crate::integrate::{Motion, Plan};
+use crate::integrate::{Motion, Plan, Warm};
 use crate::lanes::{Lanes, Real};
 use crate::narrow::Narrow;
 use crate::settings::{Skip, Skips, Solver};
@@ -86,6 +86,13 @@ pub struct Task<'a, R> {
     pub plan: &'a Plan<'a, R>,
 }
 
+impl<R> Task<'_, R> {
+    /// Slower approaches do not bounce, m/s.
+    pub fn bounce_threshold(&self) -> f64 {
+        BOUNCE_STEPS * self.traits.gravity * self.dt_secs
+    }
+}
+
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
@@ -94,7 +101,17 @@ pub struct Solving<L: Lanes> {
     bounces: soft::Bounces<L>,
     /// The substep the impulses of the last step belong to, seconds.
     last_h_secs: f64,
+    /// Gaps and impulses are further on in the constraints than in the pairs' rows.
+    ahead: bool,
+    /// Something may bounce in this step.
+    bouncing: bool,
+    /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
+    /// round off must not add up.
+    until_summed: u32,
 }
+
+/// Steps for which a warm start is carried from one to the next.
+const CARRIED_STEPS: u32 = 16;
 
 impl<L: Lanes> Default for Solving<L> {
     fn default() -> Self {
@@ -103,6 +120,9 @@ impl<L: Lanes> Default for Solving<L> {
             stream: Stream::default(),
             bounces: soft::Bounces::default(),
             last_h_secs: 0.0,
+            ahead: false,
+            bouncing: false,
+            until_summed: 0,
         }
     }
 }
@@ -126,41 +146,65 @@ impl<L: Lanes> Solving<L> {
             }
         }
         self.stream.begin(&narrow.manifolds, motion.matter.fours());
+        self.until_summed = 0;
     }
 
-    /// Before the first substep: what bounces is noted, and the rows get what the warm start adds.
+    /// Forgets what constraints hold: the pairs they belong to are gone.
+    pub fn forget(&mut self) {
+        (self.ahead, self.until_summed) = (false, 0);
+    }
+
+    /// Hands gaps and impulses back to the pairs, before manifolds are found anew.
+    pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if std::mem::take(&mut self.ahead) {
+            self.stream.end(manifolds, motion.moved.fours());
+        }
+    }
+
+    /// Before the first substep: what bounces is noted, and where the warm start is said.
     pub fn begin(
         &mut self,
         task: &Task<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
-    ) {
-        if task.traits.restitution && pushes(task.solver) {
+    ) -> Warm {
+        let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
+        let bounced = self.bouncing;
+        self.bouncing = task.traits.restitution && pushes(task.solver) && motion.swift;
+        if self.bouncing {
+            self.hand_back(manifolds, motion);
             motion.load::<L>(task.plan, bodies);
             self.bounces.resize(self.stream.batches());
             self.stream.visit(&mut soft::NoteApproach {
                 rows: motion.velocity.fours(),
                 accelerations: motion.acceleration.fours(),
-                threshold: L::lit(BOUNCE_STEPS * task.traits.gravity * task.dt_secs),
+                threshold: L::lit(task.bounce_threshold()),
                 bounces: &mut self.bounces,
             });
         }
+        let carries = carries_impulses(task.solver);
+        if carries && !bounced && !self.bouncing && self.until_summed > 0 && h == last {
+            self.until_summed -= 1;
+            return Warm::Carried;
+        }
+        self.until_summed = CARRIED_STEPS;
         motion.clear_rows();
-        if carries_impulses(task.solver) {
-            let (h, last) = (task.plan.h_secs, self.last_h_secs);
+        if carries {
             let share = if last > 0.0 { h / last } else { 1.0 };
             let rows = motion.velocity.fours_mut();
             self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(share) });
         }
-        self.last_h_secs = task.plan.h_secs;
+        Warm::Summed
     }
 
     /// Contacts of one substep, before bodies move.
     pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
-        let Traits { friction, restitution, length, gravity } = task.traits;
+        let Traits { friction, restitution, length, .. } = task.traits;
         let h_secs = task.plan.h_secs;
         let rows = motion.velocity.fours_mut();
-        let moved = (!first).then_some(motion.moved.fours());
+        // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
+        let moved = (!first || self.ahead).then_some(motion.moved.fours());
         let stream = &mut self.stream;
         match task.solver {
             Solver::Soft => {
@@ -187,16 +231,16 @@ impl<L: Lanes> Solving<L> {
                 }
             }
             Solver::Impulse => {
-                let threshold = L::lit(BOUNCE_STEPS * gravity * task.dt_secs);
+                let threshold = L::lit(task.bounce_threshold());
                 match (friction, restitution) {
                     (true, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold });
                     }
                     (true, false) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold });
                     }
                     (false, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold });
                     }
                     (false, false) => {
                         stream.visit(&mut impulse::Resolve::<L, false, false> { rows, moved, threshold });
@@ -226,14 +270,9 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// After the last substep: bounces, and pairs get their gaps and impulses back.
-    pub fn end(
-        &mut self,
-        task: &Task<'_, L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-        motion: &mut Motion<L::Elem>,
-    ) {
-        if task.traits.restitution && pushes(task.solver) {
+    /// After the last substep: bounces.
+    pub fn end(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>) {
+        if self.bouncing {
             self.stream.visit(&mut soft::Bounce {
                 rows: motion.velocity.fours_mut(),
                 touch: L::lit(TOUCH * task.traits.length),
@@ -241,7 +280,20 @@ impl<L: Lanes> Solving<L> {
                 bounces: &mut self.bounces,
             });
         }
-        self.stream.end(manifolds, motion.moved.fours());
+        self.ahead = true;
+    }
+
+    /// The manifolds with today's gaps and impulses.
+    pub fn brought_up_to_date(
+        &self,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+    ) -> Manifolds<L::Elem> {
+        let mut manifolds = manifolds.clone();
+        if self.ahead {
+            self.stream.clone().end(&mut manifolds, motion.moved.fours());
+        }
+        manifolds
     }
 
     /// The colours.

@@ -5,7 +5,7 @@
 //! | [`Stream::cut`] when contacts come or go | colours | batches |
 //! | [`Stream::begin`] | manifolds looked at, masses | constraints, warm start per body |
 //! | [`Stream::visit`] per pass | constraints, rows | constraints, rows |
-//! | [`Stream::end`] | constraints, last displacements | gaps and impulses of pairs |
+//! | [`Stream::end`] before manifolds are found anew | constraints, last displacements | gaps and impulses of pairs |
 //!
 //! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
 //! changes a row and every loop over lanes is of fixed length.
@@ -26,15 +26,16 @@ pub trait Visit<L: Lanes> {
     );
 }
 
-/// Whom a batch's lanes join: `WIDTH` entries each.
+/// Whom a batch's lanes join: `WIDTH` entries each count. Slots are held by value: a scatter then needs no
+/// second check of what the gather has checked.
 #[derive(Clone, Copy, Debug)]
 pub struct Ends<'a> {
     /// Places of pairs.
     pub place: &'a [u32],
     /// Slots of bodies A.
-    pub a: &'a [u32],
+    pub a: &'a [u32; 16],
     /// Slots of bodies B.
-    pub b: &'a [u32],
+    pub b: &'a [u32; 16],
 }
 
 /// Batches of contacts solved with the same number of points.
@@ -92,17 +93,13 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
     }
 
     #[inline(always)]
-    fn ends(&self, at: usize) -> Ends<'_> {
-        let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-        Ends { place: &self.place[lanes.clone()], a: &self.a[lanes.clone()], b: &self.b[lanes] }
-    }
-
-    #[inline(always)]
     fn visit(&mut self, batches: std::ops::Range<usize>, visitor: &mut impl Visit<L>) {
         for at in batches {
             let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-            let ends =
-                Ends { place: &self.place[lanes.clone()], a: &self.a[lanes.clone()], b: &self.b[lanes] };
+            let (mut a, mut b) = ([0; 16], [0; 16]);
+            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
+            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
+            let ends = Ends { place: &self.place[lanes], a: &a, b: &b };
             visitor.visit(&mut self.constraints[at], ends, at);
         }
     }
@@ -112,7 +109,9 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
             let stale = std::mem::take(&mut self.stale[at]);
             if stale != 0 {
                 let old = self.constraints[at];
-                self.constraints[at] = prepared(manifolds, matter, self.ends(at));
+                let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+                let slots = [&self.a[lanes.clone()], &self.b[lanes.clone()]];
+                self.constraints[at] = prepared(manifolds, matter, &self.place[lanes], slots);
                 if stale != ALL_LANES {
                     self.constraints[at].keep_held(&old, stale);
                 }
@@ -125,11 +124,12 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
 fn prepared<L: Lanes, const POINTS: usize>(
     manifolds: &Manifolds<L::Elem>,
     matter: &[[L::Elem; 4]],
-    ends: Ends<'_>,
+    places: &[u32],
+    slots: [&[u32]; 2],
 ) -> Constraint<L, POINTS> {
     let mut two_points = [L::Elem::ZERO; 16];
     if POINTS == 2 {
-        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(ends.place) {
+        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(places) {
             *two = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
         }
     }
@@ -138,10 +138,10 @@ fn prepared<L: Lanes, const POINTS: usize>(
         [inv_mass, inv_inertia]
     };
     Constraint::prepare(&Parts {
-        geometry: L::gather_rows(manifolds.geometry(), ends.place),
-        gap: L::gather_fours(manifolds.gaps(), ends.place),
-        impulse: L::gather_fours(manifolds.impulses(), ends.place),
-        matter: [masses(ends.a), masses(ends.b)],
+        geometry: L::gather_rows(manifolds.geometry(), places),
+        gap: L::gather_fours(manifolds.gaps(), places),
+        impulse: L::gather_fours(manifolds.impulses(), places),
+        matter: slots.map(masses),
         two_points: L::zero().lt(L::load(&two_points)),
     })
 }
