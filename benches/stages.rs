@@ -198,7 +198,7 @@ impl Stage for Pairs<'_> {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
-        broad.find::<L>(self.bodies, self.method, margin(), false);
+        broad.find::<L>(self.bodies, self.method, margin(), 0.0, false);
     }
 
     fn answer(&self, broad: &BroadPhase<f32>) -> Answer {
@@ -288,7 +288,7 @@ impl Pile {
         let mut bodies = world.bodies().clone();
         bodies.refresh_polygons();
         let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
-        broad.find::<f32s::X8>(&bodies, Broad::Auto, margin(), false);
+        broad.find::<f32s::X8>(&bodies, Broad::Auto, margin(), 0.0, false);
         narrow.run::<f32s::X8>(&bodies, broad.pairs(), margin());
         Self { pairs: broad.pairs().to_vec(), bodies, narrow }
     }

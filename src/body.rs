@@ -374,9 +374,17 @@ impl<R: Real> Bodies<R> {
 
     /// Turns the vertices and normals of all polygons into world axes.
     pub fn refresh_polygons(&mut self) {
+        self.refresh_polygons_where(|_| true);
+    }
+
+    /// Like [`Bodies::refresh_polygons`], for the bodies in slots that are `wanted`.
+    pub fn refresh_polygons_where(&mut self, wanted: impl Fn(usize) -> bool) {
         let Polygons { body, world, owner, .. } = &mut self.polygons;
         let (cs, ss) = (self.c.padded(), self.s.padded());
         for ((body, world), &owner) in body.iter().zip(world).zip(&*owner) {
+            if !wanted(owner as usize) {
+                continue;
+            }
             let (c, s) = (cs[owner as usize], ss[owner as usize]);
             // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
             let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {

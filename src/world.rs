@@ -146,7 +146,9 @@ impl<L: Lanes> World<L> {
         let margin = traits.margin(solver);
 
         let keep = skips.has(Skip::PairList);
-        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, keep);
+        let ahead_secs =
+            if self.motion.swift && solve::carries_impulses(solver) { rounded } else { L::Elem::ZERO };
+        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, ahead_secs, keep);
         lap(&mut self.times, Stage::Broad);
 
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
@@ -158,9 +160,10 @@ impl<L: Lanes> World<L> {
                 self.narrow.deal(&self.bodies, self.broad.pairs());
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
-            looked_at = self.narrow.choose(stirred);
-            self.bodies.refresh_polygons();
-            self.narrow.collide::<L>(&self.bodies, margin);
+            looked_at = self.narrow.choose(self.bodies.len(), stirred);
+            let narrow = &self.narrow;
+            self.bodies.refresh_polygons_where(|slot| narrow.wants(slot));
+            self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
             changed = self.narrow.manifolds.refresh();
         }
         lap(&mut self.times, Stage::Narrow);

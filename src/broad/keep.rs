@@ -47,9 +47,9 @@ impl<R: Real> Keep<R> {
     }
 
     /// Does the list still hold? Counts the step if so.
-    pub(super) fn holds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) -> bool {
+    pub(super) fn holds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, ahead_secs: R) -> bool {
         let Some(age) = self.age else { return false };
-        if self.outrun::<L>(bodies) {
+        if self.outrun::<L>(bodies, ahead_secs) {
             self.pause = if age == 0 { PAUSE } else { 0 };
             return false;
         }
@@ -83,15 +83,25 @@ impl<R: Real> Keep<R> {
         self.long.extend(long.map(|slot| (slot, bodies.c[slot as usize], bodies.s[slot as usize])));
     }
 
-    fn outrun<L: Lanes<Elem = R>>(&self, bodies: &Bodies<R>) -> bool {
+    /// Has a body left its half of the skin, or will it within `ahead_secs`?
+    fn outrun<L: Lanes<Elem = R>>(&self, bodies: &Bodies<R>, ahead_secs: R) -> bool {
         // A hair less than half, for the rounding of the distances themselves.
         let bound = R::from_f64(0.499) * self.skin;
         let square = L::splat(bound * bound);
-        let columns = [&bodies.x, &bodies.y, &self.x, &self.y].map(Column::lanes::<L>);
+        let (bound_l, ahead) = (L::splat(bound), L::splat(ahead_secs));
+        let looks_ahead = ahead_secs > R::ZERO;
+        let columns =
+            [&bodies.x, &bodies.y, &self.x, &self.y, &bodies.vx, &bodies.vy].map(Column::lanes::<L>);
         let chunks = bodies.len().div_ceil(L::WIDTH);
         let moved = (0..chunks).any(|k| {
             let (dx, dy) = (columns[0][k] - columns[2][k], columns[1][k] - columns[3][k]);
-            square.lt(dx * dx + dy * dy).any()
+            let path = dx * dx + dy * dy;
+            if looks_ahead {
+                let (vx, vy) = (columns[4][k], columns[5][k]);
+                bound_l.lt(path.sqrt() + (vx * vx + vy * vy).sqrt() * ahead).any()
+            } else {
+                square.lt(path).any()
+            }
         });
         moved
             || self.long.iter().any(|&(slot, c, s)| {

@@ -5,6 +5,7 @@
 
 use super::{meet, ordered};
 use crate::body::{Bodies, Form};
+use crate::column::Column;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::scene::BodyKind;
 use crate::vec2::{Rot, Vec2};
@@ -91,18 +92,17 @@ impl<R: Real> LongBodies<R> {
     pub(super) fn find<L: Lanes<Elem = R>>(
         &self,
         bodies: &Bodies<R>,
-        half_margin: R,
+        reach: &Column<R>,
         pairs: &mut Vec<[u32; 2]>,
     ) {
         let (xs, ys) = (bodies.x.lanes::<L>(), bodies.y.lanes::<L>());
         let radii = bodies.radius.lanes::<L>();
         for bound in &self.bounds {
-            let own = Placed::<L>::new(bodies, bound, half_margin);
+            let own = Placed::<L>::new(bodies, bound, reach);
             for chunk in 0..bodies.len().div_ceil(L::WIDTH) {
-                let reach = radii[chunk] + L::splat(half_margin);
-                let hits = own.meets(xs[chunk], ys[chunk], reach);
+                let hits = own.meets(xs[chunk], ys[chunk], radii[chunk] + reach.lanes::<L>()[chunk]);
                 for lane in set_lanes(hits.bits()) {
-                    self.accept(bodies, half_margin, bound, (chunk * L::WIDTH + lane) as u32, pairs);
+                    self.accept(bodies, reach, bound, (chunk * L::WIDTH + lane) as u32, pairs);
                 }
             }
         }
@@ -112,7 +112,7 @@ impl<R: Real> LongBodies<R> {
     fn accept(
         &self,
         bodies: &Bodies<R>,
-        half_margin: R,
+        reach: &Column<R>,
         bound: &Bound<R>,
         other: u32,
         pairs: &mut Vec<[u32; 2]>,
@@ -122,9 +122,9 @@ impl<R: Real> LongBodies<R> {
         }
         if let Ok(at) = self.bounds.binary_search_by_key(&other, |b| b.slot) {
             let k = bound.slot as usize;
-            let theirs = Placed::<R>::new(bodies, &self.bounds[at], half_margin);
-            let reach = bodies.radius[k] + half_margin;
-            if other < bound.slot || !theirs.meets(bodies.x[k], bodies.y[k], reach).any() {
+            let theirs = Placed::<R>::new(bodies, &self.bounds[at], reach);
+            let radius = bodies.radius[k] + reach[k];
+            if other < bound.slot || !theirs.meets(bodies.x[k], bodies.y[k], radius).any() {
                 return;
             }
         }
@@ -143,13 +143,13 @@ struct Placed<L> {
 }
 
 impl<L: Lanes> Placed<L> {
-    fn new(bodies: &Bodies<L::Elem>, bound: &Bound<L::Elem>, half_margin: L::Elem) -> Self {
+    fn new(bodies: &Bodies<L::Elem>, bound: &Bound<L::Elem>, reach: &Column<L::Elem>) -> Self {
         let k = bound.slot as usize;
-        let half = bound.half.map(|h| h + half_margin);
+        let half = bound.half.map(|h| h + reach[k]);
         Self {
             x: L::splat(bodies.x[k]),
             y: L::splat(bodies.y[k]),
-            r: L::splat(bodies.radius[k] + half_margin),
+            r: L::splat(bodies.radius[k] + reach[k]),
             rot: Rot { c: L::splat(bodies.c[k]), s: L::splat(bodies.s[k]) },
             centre: Vec2::splat(bound.centre),
             half: Vec2::splat(half),

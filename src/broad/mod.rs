@@ -23,6 +23,7 @@ mod grid;
 mod keep;
 mod long;
 mod order;
+mod reach;
 mod sweep;
 
 use crate::body::Bodies;
@@ -42,7 +43,7 @@ pub const SWEEP_LIMIT: usize = 10_000;
 pub(crate) struct Circles<R: Real> {
     x: Column<R>,
     y: Column<R>,
-    /// Bounding radius plus half the margin.
+    /// Bounding radius plus the body's reach.
     r: Column<R>,
     slot: Vec<u32>,
 }
@@ -105,6 +106,7 @@ pub struct BroadCounts {
 pub struct BroadPhase<R: Real> {
     pairs: Vec<[u32; 2]>,
     circles: Circles<R>,
+    reach: reach::Reach<R>,
     long: long::LongBodies<R>,
     order: order::PairOrder,
     sweep: sweep::Sweep<R>,
@@ -119,6 +121,7 @@ impl<R: Real> Default for BroadPhase<R> {
         Self {
             pairs: Vec::new(),
             circles: Circles::new(),
+            reach: reach::Reach::default(),
             long: long::LongBodies::default(),
             order: order::PairOrder::default(),
             sweep: sweep::Sweep::default(),
@@ -158,23 +161,25 @@ impl<R: Real> BroadPhase<R> {
         if median.is_finite() { median } else { 0.0 }
     }
 
-    /// Finds all pairs closer than `margin` metres by their bounds; with `keep` a list may be found with a
-    /// skin and serve for several steps.
+    /// Finds all pairs closer than `margin` metres by their bounds now or, as they move now, within `ahead_secs`;
+    /// with `keep` a list may be found with a skin and serve for several steps.
     pub fn find<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
         method: Broad,
         margin: R,
+        ahead_secs: R,
         keep: bool,
     ) -> BroadCounts {
         self.look_over(bodies);
         let method = Self::resolve(method, bodies.live());
         let keep = keep && method != Broad::Off;
-        if keep && self.keep.holds::<L>(bodies) {
+        if keep && self.keep.holds::<L>(bodies, ahead_secs) {
             return BroadCounts { kept: true, ..self.kept };
         }
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
-        self.find_afresh::<L>(bodies, method, margin + skin);
+        self.reach.measure::<L>(bodies, margin, skin, ahead_secs);
+        self.find_afresh::<L>(bodies, method);
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
         self.keep.begin(bodies, self.long.slots(), skin);
@@ -182,20 +187,19 @@ impl<R: Real> BroadPhase<R> {
         self.kept
     }
 
-    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, margin: R) {
+    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad) {
         self.pairs.clear();
         if method == Broad::Off {
             return all_pairs(bodies, &mut self.pairs);
         }
-        let half_margin = R::from_f64(0.5) * margin;
-        self.pack_plain(bodies, half_margin);
+        self.pack_plain(bodies);
         match method {
             Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
             Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
             _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
         }
         let plain = self.pairs.len();
-        self.long.find::<L>(bodies, half_margin, &mut self.pairs);
+        self.long.find::<L>(bodies, &self.reach.alone, &mut self.pairs);
         if method == Broad::Brute {
             self.order.merge(&mut self.pairs, plain);
         } else {
@@ -221,14 +225,15 @@ impl<R: Real> BroadPhase<R> {
         self.pairs.capacity() * 8 + circles + self.grid.bytes() + self.sweep.bytes()
     }
 
-    fn pack_plain(&mut self, bodies: &Bodies<R>, half_margin: R) {
+    fn pack_plain(&mut self, bodies: &Bodies<R>) {
         let plain = bodies.live() - self.long.len();
         if self.circles.len() != plain {
             self.circles.resize(plain);
         }
         for (at, slot) in self.long.plain_slots().iter().enumerate() {
             let k = *slot as usize;
-            self.circles.set(at, (bodies.x[k], bodies.y[k], bodies.radius[k] + half_margin, *slot));
+            self.circles
+                .set(at, (bodies.x[k], bodies.y[k], bodies.radius[k] + self.reach.together[k], *slot));
         }
     }
 }

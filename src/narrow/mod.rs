@@ -108,7 +108,12 @@ pub enum Stirred<'a> {
 #[derive(Clone, Debug)]
 pub struct Narrow<R: Real> {
     poses: Column<R>,
+    /// Rows of four per slot: vx, vy, radius, –; only where a margin looks ahead.
+    speeds: Column<R>,
     todo: [Todo; 6],
+    /// Slots of the bodies in pairs to look at, where they are few; else all are.
+    wanted: Vec<bool>,
+    few: bool,
     /// Rows of one batch, lane by lane.
     scratch: [[R; ROW]; 16],
     /// The manifolds of all pairs.
@@ -119,7 +124,10 @@ impl<R: Real> Default for Narrow<R> {
     fn default() -> Self {
         Self {
             poses: Column::new(R::ZERO),
+            speeds: Column::new(R::ZERO),
             todo: Default::default(),
+            wanted: Vec::new(),
+            few: false,
             scratch: [[R::ZERO; ROW]; 16],
             manifolds: Manifolds::default(),
         }
@@ -132,8 +140,8 @@ impl<R: Real> Narrow<R> {
     /// Reads poses and shapes; polygons' world rows must be fresh ([`Bodies::refresh_polygons`]).
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.deal(bodies, pairs);
-        self.choose(Stirred::All);
-        self.collide::<L>(bodies, margin);
+        self.choose(bodies.len(), Stirred::All);
+        self.collide::<L>(bodies, margin, R::ZERO);
         self.manifolds.refresh();
     }
 
@@ -149,24 +157,47 @@ impl<R: Real> Narrow<R> {
         });
     }
 
-    /// Chooses the pairs last dealt that are new or have a stirred body. Returns how many.
-    pub fn choose(&mut self, stirred: Stirred<'_>) -> usize {
+    /// Chooses the pairs last dealt that are new or have a stirred body, of which there are `bodies`. Returns how
+    /// many.
+    pub fn choose(&mut self, bodies: usize, stirred: Stirred<'_>) -> usize {
         for (number, todo) in self.todo.iter_mut().enumerate() {
             todo.fill(&self.manifolds, number, stirred);
         }
-        self.todo.iter().map(|todo| todo.len).sum()
+        let chosen = self.todo.iter().map(|todo| todo.len).sum::<usize>();
+        self.few = 4 * chosen < bodies;
+        self.wanted.reserve(bodies.saturating_sub(self.wanted.len()));
+        if self.few {
+            self.wanted.clear();
+            self.wanted.resize(bodies, false);
+            for todo in &self.todo {
+                for &slot in todo.a.iter().chain(&todo.b) {
+                    self.wanted[slot as usize] = true;
+                }
+            }
+        }
+        chosen
     }
 
-    /// Finds the contacts of the pairs chosen; see [`Narrow::run`].
-    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R) {
+    /// Is the body in a slot part of a pair that will be looked at?
+    #[inline(always)]
+    pub fn wants(&self, slot: usize) -> bool {
+        !self.few || self.wanted[slot]
+    }
+
+    /// Finds the contacts of the pairs chosen; see [`Narrow::run`]. The margin of a pair is wider by what its
+    /// centroids can close in `ahead_secs`, up to half the smaller one's radius: a contact is there before bodies overlap.
+    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R, ahead_secs: R) {
         if self.todo.iter().all(|todo| todo.len == 0) {
             return;
         }
         self.write_poses::<L>(bodies);
-        let margin = L::splat(margin);
+        if ahead_secs > R::ZERO {
+            self.write_speeds::<L>(bodies);
+        }
+        let margin = Margin { still: L::splat(margin), ahead: L::splat(ahead_secs) };
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
-        self.run_bucket::<L>(&cc, |a, b, _| circle_circle::collide(a, b, margin));
-        self.run_bucket::<L>(&cb, |a, b, _| circle_box::collide(a, b, margin));
+        self.run_bucket::<L>(&cc, margin, |a, b, _, margin| circle_circle::collide(a, b, margin));
+        self.run_bucket::<L>(&cb, margin, |a, b, _, margin| circle_box::collide(a, b, margin));
         // Loops over edges are unrolled to the next of these: a third fewer instructions than counted ones.
         match bodies.polygons.max_count() {
             0..=4 => self.run_edged::<L, 4>(bodies, [&cp, &bb, &bp, &pp], margin),
@@ -181,16 +212,18 @@ impl<R: Real> Narrow<R> {
         &mut self,
         bodies: &Bodies<R>,
         [cp, bb, bp, pp]: [&Todo; 4],
-        margin: L,
+        margin: Margin<L>,
     ) {
         let hull =
             |slots: &[u32]| Hull::<L>::gather(&bodies.polygons.world, &polygon_index::<L, R>(bodies, slots));
-        self.run_bucket::<L>(cp, |a, b, [_, ib]| circle_polygon::collide(a, b, &hull(ib), EDGES, margin));
-        self.run_bucket::<L>(bb, |a, b, _| box_box::collide(a, b, margin));
-        self.run_bucket::<L>(bp, |a, b, [_, ib]| {
+        self.run_bucket::<L>(cp, margin, |a, b, [_, ib], margin| {
+            circle_polygon::collide(a, b, &hull(ib), EDGES, margin)
+        });
+        self.run_bucket::<L>(bb, margin, |a, b, _, margin| box_box::collide(a, b, margin));
+        self.run_bucket::<L>(bp, margin, |a, b, [_, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &Hull::of_box(a), &hull(ib), margin)
         });
-        self.run_bucket::<L>(pp, |a, b, [ia, ib]| {
+        self.run_bucket::<L>(pp, margin, |a, b, [ia, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &hull(ia), &hull(ib), margin)
         });
     }
@@ -206,7 +239,9 @@ impl<R: Real> Narrow<R> {
     }
 
     fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
-        self.poses.resize(bodies.len().next_multiple_of(PAD) * ROW);
+        let padded = bodies.len().next_multiple_of(PAD);
+        self.poses.resize(padded * ROW);
+        self.speeds.resize(padded * 4);
         let columns = [
             &bodies.x,
             &bodies.y,
@@ -219,8 +254,25 @@ impl<R: Real> Narrow<R> {
         ]
         .map(Column::lanes::<L>);
         let rows = self.poses.rows_mut();
+        if self.few {
+            let columns = columns.map(bytemuck::cast_slice::<L, R>);
+            for slot in (0..bodies.len()).filter(|&slot| self.wanted[slot]) {
+                rows[slot] = columns.map(|column| column[slot]);
+            }
+            return;
+        }
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
             L::store_rows(columns.map(|column| column[at]), &mut rows[at * L::WIDTH..]);
+        }
+    }
+
+    fn write_speeds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+        let columns = [&bodies.vx, &bodies.vy, &bodies.radius].map(Column::lanes::<L>);
+        let index: [u32; 16] = std::array::from_fn(|lane| lane as u32);
+        for at in 0..bodies.len().div_ceil(L::WIDTH) {
+            let [vx, vy, radius] = columns.map(|column| column[at]);
+            let rows = &mut self.speeds.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
+            L::scatter_fours([vx, vy, radius, L::zero()], rows, &index);
         }
     }
 
@@ -228,15 +280,18 @@ impl<R: Real> Narrow<R> {
     fn run_bucket<L: Lanes<Elem = R>>(
         &mut self,
         todo: &Todo,
-        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2]) -> Found<L>,
+        margin: Margin<L>,
+        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
     ) {
+        let looks_ahead = L::zero().lt(margin.ahead).any();
         let mut at = 0;
         while at < todo.len {
             let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
             let places = &todo.place[at..at + L::WIDTH];
             let a = Pose::gather(self.poses.rows(), slots[0]);
             let b = Pose::gather(self.poses.rows(), slots[1]);
-            let found = collide(&a, &b, slots);
+            let margin = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
+            let found = collide(&a, &b, slots, margin);
             if found.hits[0].any() {
                 self.keep(&a, &b, &found, places);
             } else {
@@ -262,6 +317,24 @@ impl<R: Real> Narrow<R> {
     }
 }
 
+/// How close is close enough.
+#[derive(Clone, Copy, Debug)]
+struct Margin<L> {
+    /// Metres, for bodies at rest.
+    still: L,
+    /// Seconds of approach that are added.
+    ahead: L,
+}
+
+impl<L: Lanes> Margin<L> {
+    #[inline(always)]
+    fn of(self, speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> L {
+        let [a, b] = slots.map(|slots| L::gather_fours(speeds, slots));
+        let path = Vec2::new(b[0] - a[0], b[1] - a[1]).length_squared().sqrt() * self.ahead;
+        self.still + path.min(L::lit(0.5) * a[2].min(b[2]))
+    }
+}
+
 /// The pairs of one bucket to look at: A, B and places apart so that a batch's are three slices.
 #[derive(Clone, Debug, Default)]
 struct Todo {
@@ -274,20 +347,24 @@ struct Todo {
 
 impl Todo {
     fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, stirred: Stirred<'_>) {
-        self.a.clear();
-        self.b.clear();
-        self.place.clear();
-        for at in manifolds.bucket(bucket) {
+        let places = manifolds.bucket(bucket);
+        for list in [&mut self.a, &mut self.b, &mut self.place] {
+            list.clear();
+            list.resize(places.len(), 0);
+        }
+        let mut chosen = 0;
+        for at in places {
             let [a, b] = manifolds.slots(at);
             let look = match stirred {
                 Stirred::All => true,
                 Stirred::These(bodies) => bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at),
             };
-            if look {
-                self.a.push(a);
-                self.b.push(b);
-                self.place.push(at as u32);
-            }
+            // Written always, kept when wanted: no branch to mispredict.
+            (self.a[chosen], self.b[chosen], self.place[chosen]) = (a, b, at as u32);
+            chosen += usize::from(look);
+        }
+        for list in [&mut self.a, &mut self.b, &mut self.place] {
+            list.truncate(chosen);
         }
         self.len = self.a.len();
         let padded = self.len.next_multiple_of(16);

@@ -104,7 +104,7 @@ fn broad<L: Lanes<Elem = f32>>(bodies: Bodies<f32>, method: Broad) -> Box<dyn Fn
     // What one lane would test: each body against all later ones, or, with a grid, its candidates.
     let all = bodies.live() * (bodies.live() - 1) / 2;
     Box::new(move || {
-        let counts = broad.find::<L>(&bodies, method, 0.0, false);
+        let counts = broad.find::<L>(&bodies, method, 0.0, 0.0, false);
         if method == Broad::Brute { all } else { counts.candidates }
     })
 }

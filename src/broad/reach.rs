@@ -1,0 +1,63 @@
+//! How far beyond its bounds a body may meet another within the step to come.
+
+use crate::body::Bodies;
+use crate::column::Column;
+use crate::lanes::{Lanes, Real};
+use crate::scene::BodyKind;
+
+/// Metres per slot, half the margin included.
+#[derive(Clone, Debug)]
+pub(super) struct Reach<R: Real> {
+    /// For pairs of plain bodies: path relative to the mean velocity of all dynamic bodies, so that bodies
+    /// that fall together do not reach out for each other.
+    pub(super) together: Column<R>,
+    /// For pairs with a long body: path as such.
+    pub(super) alone: Column<R>,
+}
+
+impl<R: Real> Default for Reach<R> {
+    fn default() -> Self {
+        Self { together: Column::new(R::ZERO), alone: Column::new(R::ZERO) }
+    }
+}
+
+impl<R: Real> Reach<R> {
+    /// Half of `margin`, and the larger of half of `skin` and what a body moves in `ahead_secs`.
+    pub(super) fn measure<L: Lanes<Elem = R>>(
+        &mut self,
+        bodies: &Bodies<R>,
+        margin: R,
+        skin: R,
+        ahead_secs: R,
+    ) {
+        self.together.resize(bodies.len());
+        self.alone.resize(bodies.len());
+        let half = R::from_f64(0.5);
+        if ahead_secs <= R::ZERO {
+            let reach = half * (margin + skin);
+            self.together.as_mut_slice().fill(reach);
+            self.alone.as_mut_slice().fill(reach);
+            return;
+        }
+        let [mean_x, mean_y] = mean_velocity(bodies).map(L::splat);
+        let (margin, skin, ahead) = (L::splat(half * margin), L::splat(half * skin), L::splat(ahead_secs));
+        let (vx, vy) = (bodies.vx.lanes::<L>(), bodies.vy.lanes::<L>());
+        for at in 0..bodies.len().div_ceil(L::WIDTH) {
+            let path = |x: L, y: L| margin + skin.max((x * x + y * y).sqrt() * ahead);
+            self.together.lanes_mut::<L>()[at] = path(vx[at] - mean_x, vy[at] - mean_y);
+            self.alone.lanes_mut::<L>()[at] = path(vx[at], vy[at]);
+        }
+    }
+}
+
+/// Of dynamic bodies, m/s; summed in slot order, so that no width changes it.
+fn mean_velocity<R: Real>(bodies: &Bodies<R>) -> [R; 2] {
+    let mut sum = [0.0; 2];
+    let mut count = 0.0_f64;
+    for slot in (0..bodies.len()).filter(|&slot| bodies.kind(slot) == BodyKind::Dynamic) {
+        sum[0] += bodies.vx[slot].to_f64();
+        sum[1] += bodies.vy[slot].to_f64();
+        count += 1.0;
+    }
+    sum.map(|v| R::from_f64(v / count.max(1.0)))
+}
