@@ -69,53 +69,31 @@ impl Data {
         Ok(Self { machine: Machine::read(), quick, matrix, broad_phase, determinism, lanes, skips, flight })
     }
 
-    /// The median time of a row of the matrix, ms per step.
-    pub fn time_ms(
-        &self,
-        mix: &str,
-        integrator: &str,
-        bodies: usize,
-        engine: &str,
-        lanes: usize,
-    ) -> Option<f64> {
-        let wanted = |row: &&matrix::Row| {
-            row.mix == mix
-                && row.integrator == integrator
-                && row.bodies == bodies
-                && row.engine == engine
-                && row.lanes == lanes
-        };
-        self.matrix.iter().find(wanted).map(|row| row.ms_per_step.median)
-    }
-
-    /// The headline: how many times faster than the baseline each mix runs, semi-implicit Euler.
+    /// The headline: how many times faster than the baseline with its Euler each mix runs, at 8 lanes.
     pub fn headlines(&self) -> Vec<Headline> {
-        let ours = self
-            .matrix
-            .iter()
-            .filter(|r| r.engine == "lamina2d" && r.integrator == "semi_implicit_euler" && r.lanes == 8);
+        let ours = self.matrix.iter().filter(|r| {
+            r.engine == "lamina2d" && r.integrator == matrix::HEADLINE_INTEGRATOR.name() && r.lanes == 8
+        });
         ours.map(|row| {
-            let against = |engine| {
-                let base = self.time_ms(&row.mix, &row.integrator, row.bodies, engine, 1);
-                base.map(|ms| ms / row.ms_per_step.median)
-            };
-            let overlap = |engine: &str| {
-                let base = self.matrix.iter().find(|r| {
+            let base = |engine| {
+                let wanted = |r: &&matrix::Row| {
                     r.engine == engine
                         && r.mix == row.mix
                         && r.bodies == row.bodies
-                        && r.integrator == row.integrator
-                });
-                base.map(|r| r.mean_penetration)
+                        && r.integrator == "semi_implicit_euler"
+                };
+                self.matrix.iter().find(wanted)
             };
+            let against = |engine| base(engine).map(|r| r.ms_per_step.median / row.ms_per_step.median);
             Headline {
                 mix: row.mix.clone(),
                 bodies: row.bodies,
+                substeps: row.substeps,
                 ms: row.ms_per_step.median,
                 times_thesis: against("thesis"),
                 times_tidy: against("tidy"),
                 mean_penetration: row.mean_penetration,
-                thesis_mean_penetration: overlap("thesis"),
+                thesis_mean_penetration: base("thesis").map(|r| r.mean_penetration),
                 contacts: row.contacts,
             }
         })
@@ -146,6 +124,8 @@ pub struct Headline {
     pub mix: String,
     /// Dynamic bodies.
     pub bodies: usize,
+    /// Our substeps per step.
+    pub substeps: u32,
     /// Our median, ms per step.
     pub ms: f64,
     /// The faithful baseline's median over ours.

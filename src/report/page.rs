@@ -72,6 +72,7 @@ fn results(data: &Data) -> Table {
         vec![
             h.mix.clone(),
             h.bodies.to_string(),
+            h.substeps.to_string(),
             format!("{:.4}", h.ms),
             times(h.times_thesis),
             times(h.times_tidy),
@@ -83,11 +84,13 @@ fn results(data: &Data) -> Table {
     Table {
         title: "Against the thesis engine",
         command: "lamina bench",
-        note: "Semi-implicit Euler, settled, one thread, 8 lanes; medians of alternating windows in one run. \
-               Speed counts only beside the overlap it costs: the last two columns.",
+        note: "Settled, one thread, 8 lanes, default settings with 4 and with 2 substeps, beside the baselines with \
+               their Euler and 1 substep; medians of alternating windows in one run. Speed counts only beside the \
+               overlap it costs: the last two columns.",
         header: vec![
             "mix",
             "bodies",
+            "substeps",
             "ms per step",
             "vs thesis",
             "vs tidy",
@@ -107,6 +110,7 @@ fn matrix(data: &Data) -> Table {
             r.bodies.to_string(),
             r.engine.clone(),
             r.lanes.to_string(),
+            r.substeps.to_string(),
             format!("{:.4}", r.ms_per_step.min),
             format!("{:.4}", r.ms_per_step.median),
             format!("{:.4}", r.ms_per_step.p99),
@@ -125,6 +129,7 @@ fn matrix(data: &Data) -> Table {
             "bodies",
             "engine",
             "lanes",
+            "substeps",
             "min ms",
             "median ms",
             "p99 ms",

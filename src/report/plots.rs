@@ -164,6 +164,7 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
             row.engine == engine
                 && row.lanes == lanes
                 && row.mix == "polygons"
+                && row.substeps != 2
                 && row.integrator == "semi_implicit_euler"
         };
         let points: Vec<_> =
@@ -226,12 +227,18 @@ fn lanes_speed_up(data: &Data) -> anyhow::Result<Plot> {
 fn times_faster(data: &Data) -> anyhow::Result<Plot> {
     let smallest = data.matrix.iter().map(|r| r.bodies).min().unwrap_or(0);
     let headlines: Vec<_> = data.headlines().into_iter().filter(|h| h.bodies == smallest).collect();
-    let labels: Vec<String> = headlines.iter().map(|h| h.mix.clone()).collect();
-    let series = |name: &str, of: fn(&super::Headline) -> Option<f64>| {
-        let points = headlines.iter().enumerate().map(|(k, h)| (k as f64, of(h).unwrap_or(0.0)));
-        Series { name: name.to_owned(), points: points.collect() }
+    let with = |substeps| headlines.iter().filter(move |h| h.substeps == substeps);
+    let labels: Vec<String> = with(4).map(|h| h.mix.clone()).collect();
+    let series = |name: &str, substeps, of: fn(&super::Headline) -> Option<f64>| {
+        let points = with(substeps).enumerate().map(|(k, h)| (k as f64, of(h).unwrap_or(0.0)));
+        Series { name: format!("against {name}, {substeps} substeps"), points: points.collect() }
     };
-    let series = [series("against thesis", |h| h.times_thesis), series("against tidy", |h| h.times_tidy)];
+    let series = [
+        series("thesis", 2, |h| h.times_thesis),
+        series("thesis", 4, |h| h.times_thesis),
+        series("tidy", 2, |h| h.times_tidy),
+        series("tidy", 4, |h| h.times_tidy),
+    ];
     Ok(Plot {
         file: "times_faster.svg",
         about: format!("How many times faster than the thesis engine each mix of {smallest} bodies runs"),

@@ -22,6 +22,8 @@ pub struct Row {
     pub engine: String,
     /// Numbers per vector; 1 for the baselines.
     pub lanes: usize,
+    /// Integrate-and-solve rounds per step; 1 for the baselines.
+    pub substeps: u32,
     /// Steps timed one by one.
     pub ms_per_step: Timing,
     /// Contacts in the last step.
@@ -35,6 +37,11 @@ pub struct Row {
     /// How the state that was timed came about.
     pub start: &'static str,
 }
+
+/// The integrator of the headline table: the default.
+pub const HEADLINE_INTEGRATOR: Integrator = Integrator::VelocityVerlet;
+/// Beside the default's, at 8 lanes: half the work, a few times the overlap, far less than the thesis's.
+const FEW_SUBSTEPS: u32 = 2;
 
 /// Windows of steps, in which all engines take turns.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +96,7 @@ struct Entry {
     integrator: Integrator,
     engine: &'static str,
     lanes: usize,
+    substeps: u32,
     start: &'static str,
     contestant: Contestant,
     samples_ms: Vec<f64>,
@@ -122,18 +130,29 @@ pub fn run(plan: &Plan, tick: &mut dyn FnMut()) -> anyhow::Result<Vec<Row>> {
 fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<Entry>> {
     let scene = mix(shapes, windows.bodies, 1);
     let mut settled = simulate(&scene, Settings::default())?;
-    for _ in 0..SETTLE_STEPS {
+    // Ten thousand bodies fall for seven seconds before they can begin to settle.
+    let large = windows.bodies > 1000;
+    let (steps, by_us) = if large {
+        (3 * SETTLE_STEPS, "1800 steps of lamina2d")
+    } else {
+        (SETTLE_STEPS, "600 steps of lamina2d")
+    };
+    for _ in 0..steps {
         settled.step(super::DT_SECS)?;
     }
     let mut entries = Vec::new();
     for &integrator in &plan.integrators {
-        for &lanes in &plan.lanes {
-            let world = settled.with_settings(Settings { integrator, lanes, ..Settings::default() })?;
+        let all_widths = plan.lanes.iter().map(|&lanes| (lanes, Settings::default().substeps));
+        let few = (integrator == HEADLINE_INTEGRATOR).then_some((8, FEW_SUBSTEPS));
+        for (lanes, substeps) in all_widths.chain(few) {
+            let world =
+                settled.with_settings(Settings { integrator, lanes, substeps, ..Settings::default() })?;
             entries.push(Entry {
                 integrator,
                 engine: "lamina2d",
                 lanes,
-                start: "600 steps of lamina2d",
+                substeps,
+                start: by_us,
                 contestant: Contestant::Ours(world),
                 samples_ms: Vec::new(),
             });
@@ -142,7 +161,7 @@ fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<En
     let all = [ThesisIntegrator::Euler, ThesisIntegrator::Verlet, ThesisIntegrator::Rk4];
     // At 1000 bodies settling all of them would take longer than all else together.
     let baselines = if windows.bodies <= 150 { &all[..] } else { &all[..1] };
-    let own_start = windows.bodies <= 1000;
+    let own_start = !large;
     let from = if own_start { scene } else { posed(&scene, settled.as_ref()) };
     for &integrator in baselines {
         for (engine, version) in [("thesis", Version::Faithful), ("tidy", Version::Tidy)] {
@@ -150,9 +169,17 @@ fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<En
             if own_start {
                 contestant.steps(SETTLE_STEPS)?;
             }
-            let start = if own_start { "600 steps of its own" } else { "600 steps of lamina2d" };
+            let start = if own_start { "600 steps of its own" } else { by_us };
             let integrator = integrator_of(integrator);
-            entries.push(Entry { integrator, engine, lanes: 1, start, contestant, samples_ms: Vec::new() });
+            entries.push(Entry {
+                integrator,
+                engine,
+                lanes: 1,
+                substeps: 1,
+                start,
+                contestant,
+                samples_ms: Vec::new(),
+            });
         }
     }
     Ok(entries)
@@ -162,7 +189,8 @@ fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<En
 fn check_widths(shapes: Mix, entries: &[Entry]) -> anyhow::Result<()> {
     for pair in entries.windows(2) {
         let same_run =
-            pair.iter().all(|e| e.engine == "lamina2d") && pair[0].integrator == pair[1].integrator;
+            pair.iter().all(|e| e.engine == "lamina2d" && e.substeps == Settings::default().substeps)
+                && pair[0].integrator == pair[1].integrator;
         if same_run && pair[0].contestant.hash() != pair[1].contestant.hash() {
             let [a, b] = [pair[0].lanes, pair[1].lanes];
             anyhow::bail!(
@@ -183,6 +211,7 @@ fn row(shapes: Mix, windows: &Windows, entry: &Entry) -> Row {
         bodies: windows.bodies,
         engine: entry.engine.to_owned(),
         lanes: entry.lanes,
+        substeps: entry.substeps,
         ms_per_step: Timing::of(&entry.samples_ms),
         contacts: entry.contestant.contacts(),
         max_penetration: overlap.max,
