@@ -146,6 +146,7 @@ impl Stage for Flight {
         integrate::fly::<L>(
             &Plan { integrator, fields, h_secs: DT_SECS, substeps: 1, skips, moving: false },
             bodies,
+            None,
         );
     }
 

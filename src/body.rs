@@ -6,7 +6,7 @@
 //!
 //! # Bytes per body
 //! Hot columns, read or written each step: position 2, attitude 2, velocity 3, inverse mass and inertia
-//! 2, extents 2, bounding radius 1, friction 1, restitution 1: 14 reals = 56 B in f32 (112 B in f64).
+//! 2, extents 2, bounding radius 1, core 1, friction 1, restitution 1: 15 reals = 60 B in f32 (120 B in f64).
 //! Cold, 23 B: kind 1, shape form 1, shape start 4, generation 4, filter 12 (category, collides-with,
 //! dynamic), flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
 //! vertices and normals in both frames: 8 rows of 8 (256 B in f32), beside vertex
@@ -92,6 +92,9 @@ pub struct Bodies<R: Real> {
     /// Bounding radius about the centroid, metres, widened by 1e-5 of itself so that rounding never
     /// hides a touching pair from the broad phase.
     pub radius: Column<R>,
+    /// Half the radius of the largest circle about the centroid that a dynamic body holds, metres: a longer path in
+    /// one step is fast ([`crate::continuous`]). Other bodies: out of reach.
+    pub core: Column<R>,
     /// Coulomb coefficient.
     pub friction: Column<R>,
     /// Coefficient of restitution.
@@ -137,6 +140,7 @@ impl<R: Real> Bodies<R> {
             extent_x: zero(),
             extent_y: zero(),
             radius: zero(),
+            core: Column::new(R::FAR),
             friction: zero(),
             restitution: zero(),
             force: None,
@@ -246,6 +250,8 @@ impl<R: Real> Bodies<R> {
             Shape::Box { half } => ([half.x, half.y], glam::DVec2::ZERO),
             Shape::Polygon(p) => ([0.0, 0.0], p.centroid_given()),
         };
+        let dynamic = spec.kind == BodyKind::Dynamic;
+        let core = if dynamic { 0.5 * shape.inner_radius() } else { R::FAR.to_f64() };
         // Our own sine and cosine: the same bits on every platform.
         let turn = Rot::<f64>::from_angle(spec.angle % std::f64::consts::TAU);
         let turn = glam::DVec2::new(turn.c, turn.s);
@@ -263,6 +269,7 @@ impl<R: Real> Bodies<R> {
             (&mut self.extent_x, extent[0]),
             (&mut self.extent_y, extent[1]),
             (&mut self.radius, shape.bounding_radius() * (1.0 + 1e-5)),
+            (&mut self.core, core),
             (&mut self.friction, spec.friction),
             (&mut self.restitution, spec.restitution),
         ] {
@@ -270,11 +277,7 @@ impl<R: Real> Bodies<R> {
         }
         self.form[slot] = form;
         self.kind[slot] = spec.kind;
-        self.filter[slot] = Filter {
-            category: spec.category,
-            collides_with: spec.collides_with,
-            dynamic: spec.kind == BodyKind::Dynamic,
-        };
+        self.filter[slot] = Filter { category: spec.category, collides_with: spec.collides_with, dynamic };
         self.alive[slot] = true;
         if form == Form::Polygon {
             self.shape_start[slot] = self.polygons.insert(&shape, slot as u32);
@@ -428,6 +431,7 @@ impl<R: Real> Bodies<R> {
             &self.extent_x,
             &self.extent_y,
             &self.radius,
+            &self.core,
             &self.friction,
             &self.restitution,
         ];
@@ -452,6 +456,7 @@ impl<R: Real> Bodies<R> {
             &mut self.extent_x,
             &mut self.extent_y,
             &mut self.radius,
+            &mut self.core,
             &mut self.friction,
             &mut self.restitution,
         ] {
@@ -489,6 +494,7 @@ impl<R: Real> Bodies<R> {
         self.c[slot] = R::ONE;
         self.x[slot] = R::FAR;
         self.y[slot] = R::FAR;
+        self.core[slot] = R::FAR;
         self.form[slot] = Form::Circle;
         self.kind[slot] = BodyKind::Static;
         self.filter[slot] = Filter::default();

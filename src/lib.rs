@@ -23,7 +23,7 @@
 //! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
-//! | [`broad`], [`narrow`], [`integrate`], [`solve`] | the stages; they never import each other |
+//! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
 //! | [`contact`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
@@ -37,7 +37,8 @@
 //! | per substep: predict | position, velocity, fields | solver rows, free velocity, displacement |
 //! | per substep: solve | manifolds, batches, rows | rows, impulses |
 //! | per substep: correct | rows | velocity, displacement since the step began |
-//! | finish | displacement | position, attitude |
+//! | finish | displacement | position, attitude, list of fast bodies |
+//! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
 //! | measure | pose, velocity | finite check, counts |
 //!
 //! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]).
@@ -73,6 +74,7 @@ pub mod broad;
 pub mod clock;
 pub mod column;
 pub mod contact;
+pub mod continuous;
 pub mod drive;
 pub mod force;
 pub mod integrate;

@@ -233,6 +233,8 @@ pub struct Settings {
     pub precision: Precision,
     /// Work left out where a scene does not need it.
     pub skips: Skips,
+    /// Do fast bodies stop at what is in their way; see [`crate::continuous`].
+    pub continuous: bool,
 }
 
 impl Default for Settings {
@@ -246,6 +248,7 @@ impl Default for Settings {
             lanes: 8,
             precision: Precision::F32,
             skips: Skips::ALL,
+            continuous: true,
         }
     }
 }

@@ -215,6 +215,17 @@ impl Shape {
         }
     }
 
+    /// The radius of the largest circle about the centroid that the shape holds, metres.
+    pub fn inner_radius(&self) -> f64 {
+        match self {
+            Self::Circle { radius } => *radius,
+            Self::Box { half } => half.x.min(half.y),
+            Self::Polygon(Polygon { vertices, .. }) => {
+                edge_normals(vertices).iter().zip(vertices).map(|(n, v)| n.dot(*v)).fold(f64::MAX, f64::min)
+            }
+        }
+    }
+
     /// The outline of a box or polygon, counter-clockwise about the centroid; empty for a circle.
     pub fn outline(&self) -> Vec<DVec2> {
         match self {

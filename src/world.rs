@@ -5,6 +5,7 @@ use std::time::Instant;
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::broad::BroadPhase;
 use crate::contact::{Contact, Manifolds};
+use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan, Warm};
 use crate::lanes::{Lanes, Real};
@@ -69,6 +70,7 @@ pub struct World<L: Lanes> {
     narrow: Narrow<L::Elem>,
     solving: Solving<L>,
     motion: Motion<L::Elem>,
+    continuous: Continuous<L::Elem>,
     /// Poses may have changed by other hands than a step's: no manifold may be reused.
     disturbed: bool,
     steps: u64,
@@ -107,6 +109,7 @@ impl<L: Lanes> World<L> {
             narrow: Narrow::default(),
             solving: Solving::default(),
             motion: Motion::default(),
+            continuous: Continuous::default(),
             disturbed: true,
             steps: 0,
             counts: Counts::default(),
@@ -173,9 +176,10 @@ impl<L: Lanes> World<L> {
         let plan = Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving };
         let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
+        let fast = self.continuous.begin(self.settings.continuous);
         if free_flight {
-            self.disturbed = true;
-            skipped = integrate::fly::<L>(&plan, &mut self.bodies);
+            (self.disturbed, self.motion.swift) = (true, true);
+            skipped = integrate::fly::<L>(&plan, &mut self.bodies, fast);
             lap(&mut self.times, Stage::Integrate);
         } else {
             let task = Task { solver, traits, dt_secs, plan: &plan };
@@ -203,9 +207,12 @@ impl<L: Lanes> World<L> {
             }
             solving.end(&task, motion);
             lap(&mut self.times, Stage::Solve);
-            integrate::finish::<L>(&mut self.bodies, motion, task.bounce_threshold());
+            integrate::finish::<L>(&mut self.bodies, motion, fast, task.bounce_threshold());
             lap(&mut self.times, Stage::Integrate);
         }
+        let skin_m = traits.touch();
+        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, &mut self.motion.stirred);
+        lap(&mut self.times, Stage::Integrate);
 
         skipped.manifolds = (self.narrow.manifolds.pairs() - looked_at) as u64;
         self.counts =
@@ -242,6 +249,7 @@ impl<L: Lanes> World<L> {
         };
         self.motion.resize(&self.bodies);
         self.motion.swift = true;
+        self.continuous.look_over(&self.bodies);
         self.disturbed = true;
     }
 

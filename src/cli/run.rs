@@ -31,7 +31,7 @@ pub(crate) struct Args {
     /// explicit_euler, semi_implicit_euler, velocity_verlet, position_verlet, rk4 or yoshida4.
     #[arg(long)]
     integrator: Option<Integrator>,
-    /// impulse or pgs.
+    /// impulse, pgs or soft.
     #[arg(long)]
     solver: Option<Solver>,
     /// Integrate-and-solve rounds per step.
@@ -52,6 +52,9 @@ pub(crate) struct Args {
     /// Work to leave out where a scene does not need it: all, none, or names separated by commas.
     #[arg(long)]
     skip: Option<Skips>,
+    /// Let fast bodies go through thin walls.
+    #[arg(long)]
+    no_continuous: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -122,6 +125,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         lanes: args.lanes.unwrap_or(default_lanes),
         precision,
         skips: args.skip.unwrap_or(asked.skips),
+        continuous: asked.continuous && !args.no_continuous,
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -169,6 +173,7 @@ fn describe(
         "precision": settings.precision,
         "seed": scene.seed,
         "skip": settings.skips.to_string(),
+        "continuous": settings.continuous,
         "ms_per_step": timing,
         "stages_ns": stages,
         "counts": {

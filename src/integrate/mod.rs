@@ -28,7 +28,7 @@ mod yoshida4;
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::force::{Field, Matter, acceleration};
-use crate::lanes::{LaneMask, Lanes, Real};
+use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::settings::{Integrator, Skip, Skips};
 use crate::vec2::{Rot, Vec2};
 
@@ -243,6 +243,49 @@ fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
 /// 0, 1, 2, …: gathers of neighbouring rows.
 const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
+/// A body that moved further in a step than it may unseen: where it began, and how far it went. 32 B in f32.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fast<R> {
+    /// Its slot.
+    pub slot: u32,
+    /// x, y (metres), cos, sin of the attitude as the step began.
+    pub start: [R; 4],
+    /// x, y (metres), angle (rad).
+    pub moved: [R; 3],
+}
+
+/// The fast bodies of a step, by slot; `None` where nobody asks.
+pub type FastBodies<'a, R> = Option<&'a mut Vec<Fast<R>>>;
+
+/// Notes the fast among the bodies of one lane value, before their poses change.
+#[inline(always)]
+fn note_fast<L: Lanes>(
+    bodies: &Bodies<L::Elem>,
+    at: usize,
+    path: L,
+    moved: [L; 3],
+    fast: &mut Vec<Fast<L::Elem>>,
+) {
+    let is_fast = bodies.core.lanes::<L>()[at].lt(path);
+    if is_fast.any() {
+        let moved = moved.map(L::to_array);
+        for lane in set_lanes(is_fast.bits()) {
+            let slot = at * L::WIDTH + lane;
+            fast.push(Fast {
+                slot: slot as u32,
+                start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].map(|column| column[slot]),
+                moved: moved.map(|lanes| lanes[lane]),
+            });
+        }
+    }
+}
+
+/// |Δx| + |Δy| + R·|Δθ|: no point of a body goes further.
+#[inline(always)]
+fn path_of<L: Lanes>(moved: [L; 3], radius: L) -> L {
+    (moved[0].abs() + moved[1].abs()) + radius * moved[2].abs()
+}
+
 /// What the passes of this module left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Skipped {
@@ -304,9 +347,13 @@ macro_rules! with_scheme {
     };
 }
 
-/// A whole step of bodies that touch nothing: one pass over the columns.
-pub fn fly<L: Lanes>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L::Elem>) -> Skipped {
-    let mut skipped = with_scheme!(plan, fly_with(plan, bodies));
+/// A whole step of bodies that touch nothing: one pass over the columns. Notes the fast ones in `fast`.
+pub fn fly<L: Lanes>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &mut Bodies<L::Elem>,
+    mut fast: FastBodies<'_, L::Elem>,
+) -> Skipped {
+    let mut skipped = with_scheme!(plan, fly_with(plan, bodies, &mut fast));
     skipped.closed_form = if plan.collapses() { bodies.live() as u64 } else { 0 };
     skipped
 }
@@ -357,7 +404,11 @@ fn angular_acceleration<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Option
     })
 }
 
-fn fly_with<L: Lanes, S: Scheme>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L::Elem>) -> Skipped {
+fn fly_with<L: Lanes, S: Scheme>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &mut Bodies<L::Elem>,
+    fast: &mut FastBodies<'_, L::Elem>,
+) -> Skipped {
     let step = Step::new(plan.h_secs);
     let may_skip_rotation = plan.skips.has(Skip::Rotation);
     let mut skipped = Skipped::default();
@@ -375,10 +426,8 @@ fn fly_with<L: Lanes, S: Scheme>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L
         let mut w = *block::<L>(&bodies.w, at);
         let alpha = angular_acceleration::<L>(bodies, at);
         let still = may_skip_rotation && alpha.is_none() && !w.iter().any(|w| (!w.equals(L::zero())).any());
-        if still {
-            skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
-        } else {
-            let mut angle = [L::zero(); BLOCK];
+        let mut angle = [L::zero(); BLOCK];
+        if !still {
             for _ in 0..plan.substeps {
                 for i in 0..BLOCK {
                     let (turn, next) = S::spin(step, w[i], alpha.map_or(L::zero(), |a| a[i]));
@@ -386,6 +435,17 @@ fn fly_with<L: Lanes, S: Scheme>(plan: &Plan<'_, L::Elem>, bodies: &mut Bodies<L
                     w[i] = next;
                 }
             }
+        }
+        if let Some(fast) = fast {
+            for i in 0..BLOCK {
+                let moved = [moved[i].x, moved[i].y, angle[i]];
+                let path = path_of(moved, bodies.radius.lanes::<L>()[at + i]);
+                note_fast(bodies, at + i, path, moved, fast);
+            }
+        }
+        if still {
+            skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
+        } else {
             turn_block(bodies, at, &angle);
             bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
         }
@@ -484,9 +544,14 @@ pub fn advance<L: Lanes>(
 pub const STIR: f64 = 4e-3;
 
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
-/// have gone further than [`STIR`] of their radius since they last did are noted as stirred. `swift`: a speed, m/s,
-/// that no two bodies' points reach together while no body's reaches half of it.
-pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Elem>, swift: f64) {
+/// have gone further than [`STIR`] of their radius since they last did are noted as stirred, fast ones in `fast`.
+/// `swift`: a speed, m/s, that no two bodies' points reach together while no body's reaches half of it.
+pub fn finish<L: Lanes>(
+    bodies: &mut Bodies<L::Elem>,
+    motion: &mut Motion<L::Elem>,
+    mut fast: FastBodies<'_, L::Elem>,
+    swift: f64,
+) {
     let (bound, half_swift) = (L::lit(STIR), L::lit(0.5 * swift));
     let (mut any_stirred, mut any_swift) = (0, 0);
     for start in block_starts::<L>(bodies.len()) {
@@ -496,6 +561,11 @@ pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Ele
             let [vx, vy, w, _] = load_four::<L>(&motion.velocity, at);
             let last = load_four::<L>(&motion.moved, at);
             let moved: [L; 3] = std::array::from_fn(|k| motion.total[k].lanes::<L>()[at] + last[k]);
+            let radius = bodies.radius.lanes::<L>()[at];
+            let path = path_of(moved, radius);
+            if let Some(fast) = &mut fast {
+                note_fast(bodies, at, path, moved, fast);
+            }
             for (column, value) in [(&mut bodies.vx, vx), (&mut bodies.vy, vy), (&mut bodies.w, w)] {
                 column.lanes_mut::<L>()[at] = value;
             }
@@ -503,8 +573,6 @@ pub fn finish<L: Lanes>(bodies: &mut Bodies<L::Elem>, motion: &mut Motion<L::Ele
                 column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
             }
             angle[i] = moved[2];
-            let radius = bodies.radius.lanes::<L>()[at];
-            let path = (moved[0].abs() + moved[1].abs()) + radius * moved[2].abs();
             any_swift |= half_swift.le((vx.abs() + vy.abs()) + radius * w.abs()).bits();
             let drift = motion.drift.lanes::<L>()[at] + path;
             let stirs = (bound * radius).lt(drift);

@@ -40,7 +40,7 @@ pub struct Traits {
 const MARGIN: f64 = 0.025;
 /// Approaches slower than gravity makes in so many steps do not bounce.
 const BOUNCE_STEPS: f64 = 3.0;
-/// Gaps up to this share of the median radius have touched when a bounce is due.
+/// Gaps up to this share of the median radius have touched: when a bounce is due, when a fast body is stopped.
 const TOUCH: f64 = 1e-3;
 
 impl Traits {
@@ -52,6 +52,11 @@ impl Traits {
             restitution: self.restitution || !skips.has(Skip::Restitution),
             ..self
         }
+    }
+
+    /// Gaps up to this have touched, metres.
+    pub fn touch(self) -> f64 {
+        TOUCH * self.length
     }
 
     /// The gap within which a solver wants to hear of contacts, metres.
@@ -275,7 +280,7 @@ impl<L: Lanes> Solving<L> {
         if self.bouncing {
             self.stream.visit(&mut soft::Bounce {
                 rows: motion.velocity.fours_mut(),
-                touch: L::lit(TOUCH * task.traits.length),
+                touch: L::lit(task.traits.touch()),
                 moved: motion.moved.fours(),
                 bounces: &mut self.bounces,
             });

@@ -323,13 +323,13 @@ fn bytes_are_those_the_documentation_states() {
     let triangle = ShapeSpec::Polygon(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
     let mut mixed = discs.clone();
     mixed[..10].iter_mut().for_each(|body| body.shape = triangle.clone());
-    assert_eq!(bytes::<f32>(&discs), 128 * (56 + 23));
-    assert_eq!(bytes::<f64>(&discs), 128 * (112 + 23));
-    assert_eq!(bytes::<f32>(&pushed), 128 * (56 + 23 + 12));
-    assert_eq!(bytes::<f64>(&pushed), 128 * (112 + 23 + 24));
-    assert_eq!(bytes::<f32>(&mixed), 128 * (56 + 23) + 10 * (256 + 5));
-    assert_eq!(bytes::<f64>(&mixed), 128 * (112 + 23) + 10 * (512 + 5));
-    assert_eq!(bytes::<f32>(&discs[..1]), 64 * 56 + 2 * 23, "hot columns come in 64s");
+    assert_eq!(bytes::<f32>(&discs), 128 * (60 + 23));
+    assert_eq!(bytes::<f64>(&discs), 128 * (120 + 23));
+    assert_eq!(bytes::<f32>(&pushed), 128 * (60 + 23 + 12));
+    assert_eq!(bytes::<f64>(&pushed), 128 * (120 + 23 + 24));
+    assert_eq!(bytes::<f32>(&mixed), 128 * (60 + 23) + 10 * (256 + 5));
+    assert_eq!(bytes::<f64>(&mixed), 128 * (120 + 23) + 10 * (512 + 5));
+    assert_eq!(bytes::<f32>(&discs[..1]), 64 * 60 + 2 * 23, "hot columns come in 64s");
 }
 
 /// What a world says when it stops at its first step, and that it keeps the state it names.

@@ -1,6 +1,9 @@
 //! Golden state hashes: each scene ends in the same bits at every lane width, with all skips and with none,
 //! in debug and release, with AVX2 and with SSE2 alone.
 //!
+//! Fast bodies are not stopped here: the table holds what contacts and integrators make of a scene. That they
+//! stop alike everywhere has a test of its own.
+//!
 //! A change that is meant to move bits is blessed with `LAMINA_BLESS=1 cargo test --test golden`, which
 //! rewrites golden.toml; its diff belongs into the commit that moved them.
 
@@ -132,15 +135,19 @@ fn read_table() -> Table {
     toml::from_str(&std::fs::read_to_string(table_path()).unwrap_or_default()).unwrap()
 }
 
+/// The settings of the table.
+fn held(precision: Precision, lanes: usize, skips: Skips) -> Settings {
+    Settings { precision, lanes, skips, continuous: false, ..Settings::default() }
+}
+
 /// Writes what width 1 without skips finds, and fails: a blessed run has tested nothing.
 fn bless() -> ! {
     let mut text = "# State hashes, by precision and scene: see golden.rs.\n".to_owned();
     for precision in Precision::ALL {
         writeln!(text, "\n[{precision}]").unwrap();
         for case in cases() {
-            let plain =
-                Settings { precision: *precision, lanes: 1, skips: Skips::NONE, ..Settings::default() };
-            writeln!(text, "\"{}\" = \"{}\"", case.name, final_hash(&case, plain)).unwrap();
+            let hash = final_hash(&case, held(*precision, 1, Skips::NONE));
+            writeln!(text, "\"{}\" = \"{hash}\"", case.name).unwrap();
         }
     }
     std::fs::write(table_path(), text).unwrap();
@@ -160,8 +167,7 @@ fn no_width_and_no_skip_moves_a_bit_of_any_scene() {
             let expected = expected.map_or("no line in golden.toml", String::as_str);
             for &lanes in Settings::widths(precision) {
                 for skips in [Skips::EXACT, Skips::NONE] {
-                    let settings = Settings { precision, lanes, skips, ..Settings::default() };
-                    let found = final_hash(&case, settings);
+                    let found = final_hash(&case, held(precision, lanes, skips));
                     if found != expected {
                         let (name, integrator) = (&case.name, case.integrator);
                         writeln!(
@@ -179,6 +185,23 @@ fn no_width_and_no_skip_moves_a_bit_of_any_scene() {
         wrong.is_empty(),
         "bits moved:\n{wrong}\nWhere that was the purpose: LAMINA_BLESS=1 cargo test --test golden"
     );
+}
+
+#[test]
+fn no_width_and_no_skip_moves_a_bit_where_fast_bodies_are_stopped() {
+    for case in cases().into_iter().filter(|case| case.name.starts_with("all_fields")) {
+        for &precision in Precision::ALL {
+            let plain = held(precision, 1, Skips::NONE);
+            let stopped = final_hash(&case, Settings { continuous: true, ..plain });
+            assert_ne!(stopped, final_hash(&case, plain), "{}: something is fast there", case.name);
+            for &lanes in Settings::widths(precision) {
+                for skips in [Skips::EXACT, Skips::NONE] {
+                    let settings = Settings { continuous: true, ..held(precision, lanes, skips) };
+                    assert_eq!(final_hash(&case, settings), stopped, "{} {settings:?}", case.name);
+                }
+            }
+        }
+    }
 }
 
 /// Reused manifolds change bits, the same at every width.

@@ -150,10 +150,20 @@ fn what_is_to_stand_stands() {
     }
 }
 
-/// Steps of 1/60 s set a projectile down before its wall and behind it, never in it.
+/// Steps of 1/60 s set a projectile down before its wall and behind it, never in it: it passes unless it is stopped.
 #[test]
 fn bullets_pass_their_walls_between_two_steps() {
     for scene in [named("bullet"), named("bullets")] {
+        for continuous in [false, true] {
+            let mut world = start(&scene, Settings { continuous, ..in_f64() });
+            for _ in 0..scene.steps {
+                world.step(DT_SECS).unwrap();
+            }
+            for shot in world.states().chunks(2) {
+                let stopped = shot[0].position[0] < shot[1].position[0];
+                assert_eq!(stopped, continuous, "{}: {shot:?}", scene.name);
+            }
+        }
         for shot in scene.bodies.chunks(2) {
             let reach = shot[0].shape.build().unwrap().bounding_radius() + 0.05;
             let gap =

@@ -69,7 +69,7 @@ fn measure(count: usize, integrator: Integrator, repeats: usize) -> anyhow::Resu
     for _ in 0..repeats {
         let start = Instant::now();
         for _ in 0..calls {
-            integrate::fly::<f32s::X8>(&plan, std::hint::black_box(&mut bodies));
+            integrate::fly::<f32s::X8>(&plan, std::hint::black_box(&mut bodies), None);
         }
         ours.push(start.elapsed().as_secs_f64() / calls as f64);
         let start = Instant::now();

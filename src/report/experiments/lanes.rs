@@ -146,7 +146,7 @@ fn advance<L: Lanes<Elem = f32>>(
             skips: Skips::NONE,
             moving: false,
         };
-        integrate::fly::<L>(&plan, &mut bodies);
+        integrate::fly::<L>(&plan, &mut bodies, None);
         bodies.live()
     })
 }
