@@ -73,6 +73,8 @@ pub struct World<L: Lanes> {
     continuous: Continuous<L::Elem>,
     /// Poses may have changed by other hands than a step's: no manifold may be reused.
     disturbed: bool,
+    /// The broad phase has a list the narrow phase has not taken yet.
+    undealt: bool,
     steps: u64,
     counts: Counts,
     times: StageTimes,
@@ -111,6 +113,7 @@ impl<L: Lanes> World<L> {
             motion: Motion::default(),
             continuous: Continuous::default(),
             disturbed: true,
+            undealt: true,
             steps: 0,
             counts: Counts::default(),
             times: StageTimes::default(),
@@ -155,11 +158,13 @@ impl<L: Lanes> World<L> {
         lap(&mut self.times, Stage::Broad);
 
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
-        let still = found.kept && reuse && !self.motion.any_stirred;
+        // A new list can wait until something stirs: what was too far apart for a contact still is.
+        self.undealt |= !found.kept;
+        let still = reuse && !self.motion.any_stirred;
         let (mut looked_at, mut changed) = (0, false);
         if !still {
             self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
-            if !found.kept {
+            if std::mem::take(&mut self.undealt) {
                 self.narrow.deal(&self.bodies, self.broad.pairs());
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };

@@ -229,13 +229,27 @@ fn skips(data: &Data) -> Table {
             format!("{:.1} %", r.saved * 100.0),
             if r.same_hash { "yes" } else { "no" }.to_owned(),
             r.spared.to_string(),
+            r.max_penetration_m.map(|m| format!("{:.3}", m * 1e3)).join(" / "),
+            r.kinetic_energy_j.map(|j| format!("{j:.1e}")).join(" / "),
         ]
     };
     Table {
         title: "Skips",
         command: "lamina report",
-        note: "All skips on, against all but one, and against none.",
-        header: vec!["scene", "integrator", "skip off", "on ms", "off ms", "saved", "same bits", "spared"],
+        note: "All exact skips on, against all but one, and against none (exact); reused manifolds on top of all, \
+               against without. Overlap and energy: on / off.",
+        header: vec![
+            "scene",
+            "integrator",
+            "skip off",
+            "on ms",
+            "off ms",
+            "saved",
+            "same bits",
+            "spared",
+            "max overlap mm",
+            "kinetic energy J",
+        ],
         rows: data.skips.iter().map(row).collect(),
     }
 }

@@ -6,7 +6,7 @@ use super::{Contestant, SETTLE_STEPS};
 use crate::report::median;
 use crate::scene::Scene;
 use crate::scene::mixes::{Mix, mix};
-use crate::settings::{Broad, Settings};
+use crate::settings::{Broad, Settings, Skips};
 use crate::simulation::simulate;
 use crate::thesis::{ThesisIntegrator, Version};
 
@@ -60,7 +60,9 @@ fn build(scene: &Scene, engine: &str, on: bool) -> anyhow::Result<Contestant> {
     let version = match engine {
         "lamina2d" => {
             let broad = if on { Broad::Auto } else { Broad::Off };
-            return Ok(Contestant::Ours(simulate(scene, Settings { broad, ..Settings::default() })?));
+            // Reused manifolds would hide what the narrow phase does with all pairs.
+            let settings = Settings { broad, skips: Skips::EXACT, ..Settings::default() };
+            return Ok(Contestant::Ours(simulate(scene, settings)?));
         }
         "thesis" => Version::Faithful,
         _ => Version::Tidy,
