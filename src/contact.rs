@@ -41,6 +41,8 @@ pub mod impulse {
     pub const NORMAL: usize = 0;
     /// Friction impulse, N·s per substep, along the normal turned a quarter counter-clockwise.
     pub const TANGENT: usize = 2;
+    /// Stiffness, N/m, of a solver that keeps one; else 0.
+    pub const STIFFNESS: usize = 3;
 }
 
 /// No colour yet.
@@ -363,6 +365,7 @@ impl<R: Real> Manifolds<R> {
                 if old.feature(j) == fresh.feature(k) {
                     row[impulse::NORMAL + k] = before[impulse::NORMAL + j];
                     row[impulse::TANGENT] = before[impulse::TANGENT];
+                    row[impulse::STIFFNESS] = before[impulse::STIFFNESS];
                 }
             }
         }

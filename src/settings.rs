@@ -79,6 +79,10 @@ named_enum! {
     Pgs = "pgs",
     /// Substepped soft contacts: the default.
     Soft = "soft",
+    /// Small steps of position-based dynamics.
+    Xpbd = "xpbd",
+    /// Augmented vertex block descent.
+    Avbd = "avbd",
 }
 
 named_enum! {

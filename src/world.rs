@@ -177,8 +177,10 @@ impl<L: Lanes> World<L> {
         lap(&mut self.times, Stage::Narrow);
 
         let (fields, moving) = (&self.fields[..], solve::pushes(solver));
+        let carries = solve::carries_impulses(solver);
         let h_secs = dt_secs / f64::from(substeps);
-        let plan = Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving };
+        let plan =
+            Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving, carries };
         let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         let fast = self.continuous.begin(self.settings.continuous);
@@ -207,10 +209,10 @@ impl<L: Lanes> World<L> {
                     // The next round's prediction would hide whether the solver began it.
                     break;
                 }
-                solving.settle(&task, motion);
+                solving.settle(&task, bodies, &mut self.narrow.manifolds, motion);
                 lap(&mut self.times, Stage::Solve);
             }
-            solving.end(&task, motion);
+            solving.end(&task, &self.narrow.manifolds, motion);
             lap(&mut self.times, Stage::Solve);
             integrate::finish::<L>(&mut self.bodies, motion, fast, task.bounce_threshold());
             lap(&mut self.times, Stage::Integrate);
@@ -220,8 +222,7 @@ impl<L: Lanes> World<L> {
         lap(&mut self.times, Stage::Integrate);
 
         skipped.manifolds = (self.narrow.manifolds.pairs() - looked_at) as u64;
-        self.counts =
-            Counts::of(found, &self.narrow.manifolds, free_flight, skipped, &self.bodies, self.traits, skips);
+        self.counts = Counts::of(found, &self.narrow.manifolds, free_flight, skipped, &self.bodies, traits);
         self.times.steps += 1;
         self.check_finite(finite)?;
         lap(&mut self.times, Stage::Measure);

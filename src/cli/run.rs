@@ -31,7 +31,7 @@ pub(crate) struct Args {
     /// explicit_euler, semi_implicit_euler, velocity_verlet, position_verlet, rk4 or yoshida4.
     #[arg(long)]
     integrator: Option<Integrator>,
-    /// impulse, pgs or soft.
+    /// impulse, pgs, soft, xpbd or avbd.
     #[arg(long)]
     solver: Option<Solver>,
     /// Integrate-and-solve rounds per step.

@@ -312,6 +312,8 @@ pub struct Plan<'a, R> {
     pub skips: Skips,
     /// Do the solver's rows hold the moving velocity u = displacement/h (else the velocity)?
     pub moving: bool,
+    /// Does a substep begin with what contacts changed velocities by in the last?
+    pub carries: bool,
 }
 
 impl<R: Real> Plan<'_, R> {
@@ -471,10 +473,12 @@ fn predict_with<L: Lanes, S: Scheme>(
         for i in 0..BLOCK {
             let at = start + i;
             let [px, py, pw, _] = load_four::<L>(&motion.velocity, at);
-            (state[i], warm[i]) = ([px, py, pw], [px, py, pw]);
-            if from != Warm::Summed {
+            state[i] = [px, py, pw];
+            if from == Warm::Summed {
+                warm[i] = state[i];
+            } else if plan.carries {
                 for k in 0..3 {
-                    warm[i][k] = warm[i][k] - motion.free[k].lanes::<L>()[at];
+                    warm[i][k] = state[i][k] - motion.free[k].lanes::<L>()[at];
                 }
             }
             if from == Warm::Onward {

@@ -211,8 +211,8 @@ pub struct Bounce<'a, L: Lanes> {
     pub rows: &'a mut [[L::Elem; 4]],
     /// Gaps up to this count as touched, metres.
     pub touch: L,
-    /// Displacement of the last substep per slot.
-    pub moved: &'a [[L::Elem; 4]],
+    /// Displacement of the last substep per slot; `None` where gaps are up to date.
+    pub moved: Option<&'a [[L::Elem; 4]]>,
     /// What was noted.
     pub bounces: &'a mut Bounces<L>,
 }
@@ -226,8 +226,9 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
             return;
         }
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
-        let moved = [L::gather_fours(self.moved, ends.a), L::gather_fours(self.moved, ends.b)];
-        let change = c.change(&moved[0], &moved[1]);
+        let change = self.moved.map_or([zero; POINTS], |moved| {
+            c.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
+        });
         let mut given = [zero; POINTS];
         // Two points push against each other: once more settles their shares.
         for _ in 0..POINTS {

@@ -246,8 +246,8 @@ impl<L: Lanes> Stream<L> {
     }
 
     /// Hands gaps and impulses back to the pairs; `moved` has the rows x, y, angle of the last substep's
-    /// displacement per slot, by which the gaps still have to change.
-    pub fn end(&mut self, manifolds: &mut Manifolds<L::Elem>, moved: &[[L::Elem; 4]]) {
+    /// displacement per slot, by which the gaps still have to change; `None` where they are up to date.
+    pub fn end(&mut self, manifolds: &mut Manifolds<L::Elem>, moved: Option<&[[L::Elem; 4]]>) {
         self.visit(&mut Store { manifolds, moved });
     }
 
@@ -266,13 +266,15 @@ impl<L: Lanes> Stream<L> {
 
 struct Store<'a, R: Real> {
     manifolds: &'a mut Manifolds<R>,
-    moved: &'a [[R; 4]],
+    moved: Option<&'a [[R; 4]]>,
 }
 
 impl<L: Lanes> Visit<L> for Store<'_, L::Elem> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        c.follow(self.moved, &ends);
+        if let Some(moved) = self.moved {
+            c.follow(moved, &ends);
+        }
         let of = |value: fn(&Point<L>) -> L| {
             [value(&c.points[0]), if POINTS == 2 { value(&c.points[POINTS - 1]) } else { L::zero() }]
         };

@@ -60,6 +60,7 @@ fn measure(count: usize, integrator: Integrator, repeats: usize) -> anyhow::Resu
         substeps: 1,
         skips: Skips::ALL,
         moving: false,
+        carries: false,
     };
     let from = vec![1.0f32; count * BYTES_PER_BODY / 8];
     let mut to = vec![0.0f32; from.len()];

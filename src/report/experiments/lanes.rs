@@ -145,6 +145,7 @@ fn advance<L: Lanes<Elem = f32>>(
             substeps: 1,
             skips: Skips::NONE,
             moving: false,
+            carries: false,
         };
         integrate::fly::<L>(&plan, &mut bodies, None);
         bodies.live()

@@ -1,0 +1,143 @@
+//! `xpbd`: small steps of position-based dynamics, one visit to each contact per substep.
+//!
+//! Recipe of a substep: predict and move → [`Project`]: displacements until nothing overlaps, static friction, and
+//! the velocities that follow → [`Settle`]: velocities alone, what overlaps left is taken out, dynamic friction.
+//! After the last substep bounces, as in [`super::soft`].
+//!
+//! At a point with separation C after the predicted displacement, Δλ = (−C − α̃·λ)/(w + α̃), α̃ = α/h², λ from 0 in every
+//! substep (kg·m); w = 1/m of the point. Both points of a face are solved together ([`super::block`]). Along the tangent
+//! the displacement of the substep is taken back as far as μ·Σλ reaches. Sources: Macklin et al., XPBD (2016) and Small
+//! Steps (2019); Müller et al., Detailed Rigid Body Simulation (2020), whose static friction is all or nothing.
+//!
+//! * **Velocities.** v = Δx/h is kept up along with the corrections: a correction Δx changes v by Δx/(h·share),
+//!   where share is what an impulse changes the displacement by over h times what it changes the velocity by
+//!   ([`crate::integrate::Plan::impulse_share`]): ½ for schemes of order ≥ 2. A resting box ends at exactly 0 so, and
+//!   a body that touches nothing keeps the scheme's bits.
+//! * **Compliance** adds α·N of overlap under a load N: 0, the hardest, needs no warm start and is no dearer.
+//! * **What it cannot do.** One visit moves a load one contact down: under k equal boxes a contact sinks by about k·g·h²,
+//!   and at mass ratios from 1000 on the lower box is pushed through the floor. Figures: [`super`].
+//! * **Impulses.** λ/(h·share) is what friction in [`Settle`] is bounded by, and what a report shows.
+
+use super::block::{answer, cross, non_negative};
+use super::constraint::{Constraint, Normals, Side};
+use super::stream::{Ends, Visit};
+use crate::lanes::{LaneMask, Lanes};
+
+/// Compliance α of contacts, m/N.
+pub(super) const COMPLIANCE: f64 = 0.0;
+/// Overlap from before the substep that one substep takes away at most: this share of the scene's median radius
+/// per step, spread over the substeps.
+pub(super) const PUSH_CAP: f64 = 0.1;
+
+/// Displacements, and the velocities that follow from them.
+#[derive(Debug)]
+pub(super) struct Project<'a, L: Lanes, const FRICTION: bool> {
+    /// Displacement of this substep per slot: x, y, angle, –.
+    pub(super) moved: &'a mut [[L::Elem; 4]],
+    /// Velocities per slot: vx, vy, ω, 1/m.
+    pub(super) rows: &'a mut [[L::Elem; 4]],
+    /// α̃ = α/h², 1/kg.
+    pub(super) softness: L,
+    /// Velocity per displacement: 1/(h·share), 1/s.
+    pub(super) per_sec: L,
+    /// −[`PUSH_CAP`] in metres per substep.
+    pub(super) push_cap: L,
+}
+
+impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let (mut va, mut vb) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        // A displacement is to λ as a velocity is to its impulse: the same kernels serve.
+        let side = |moved: &[[L::Elem; 4]], slots: &[u32], inv_mass: L| Side {
+            inv_mass,
+            ..Side::gather(moved, slots)
+        };
+        let mut a = side(self.moved, ends.a, va.inv_mass);
+        let mut b = side(self.moved, ends.b, vb.inv_mass);
+        let zero = L::zero();
+        let mut normals = Normals::begin(c, &a, &b);
+        let masses = c.points.map(|point| point.mass);
+        let soften = masses.map(|mass| L::one() / (L::one() + mass * self.softness));
+        let soft: [L; POINTS] = std::array::from_fn(|k| masses[k] * soften[k]);
+        let gaps: [L; POINTS] = std::array::from_fn(|k| {
+            let point = &c.points[k];
+            self.push_cap.max(point.separation) + normals.velocity(point)
+        });
+        let pushed = non_negative(cross(c, &normals), soft, gaps);
+        c.tangent_impulse = zero;
+        let touches = pushed.iter().any(|push| zero.lt(*push).any());
+        for k in 0..POINTS {
+            c.points[k].held = pushed[k] * soften[k];
+        }
+        if !touches {
+            return;
+        }
+        for k in 0..POINTS {
+            normals.push(c, k, soft[k] * pushed[k]);
+        }
+        normals.end(c, &mut a, &mut b);
+        if FRICTION {
+            c.solve_friction(&mut a, &mut b);
+        }
+        // The same λ, as impulses.
+        for point in &mut c.points {
+            point.held = point.held * self.per_sec;
+        }
+        c.tangent_impulse = c.tangent_impulse * self.per_sec;
+        c.apply_accumulated(&mut va, &mut vb);
+        a.scatter(self.moved, ends.a);
+        b.scatter(self.moved, ends.b);
+        va.scatter(self.rows, ends.a);
+        vb.scatter(self.rows, ends.b);
+    }
+}
+
+/// Velocities: points that carry something neither close nor part; dynamic friction. Gaps are brought up to date.
+#[derive(Debug)]
+pub(super) struct Settle<'a, L: Lanes, const FRICTION: bool> {
+    /// Displacement of this substep per slot: x, y, angle, –.
+    pub(super) moved: &'a [[L::Elem; 4]],
+    /// Velocities per slot: vx, vy, ω, 1/m.
+    pub(super) rows: &'a mut [[L::Elem; 4]],
+    /// 1/h.
+    pub(super) per_sec: L,
+}
+
+impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        c.follow(self.moved, &ends);
+        let zero = L::zero();
+        let held = c.points.map(|point| point.held);
+        if !held.iter().any(|held| zero.lt(*held).any()) {
+            return;
+        }
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let mut normals = Normals::begin(c, &a, &b);
+        let cross = cross(c, &normals);
+        let masses = c.points.map(|point| point.mass);
+        let answer = answer(cross, masses, held);
+        let wanted: [L; POINTS] = std::array::from_fn(|k| {
+            let point = &c.points[k];
+            // A point that carried nothing may go on closing its gap.
+            let closing = zero.max(point.separation) * self.per_sec;
+            normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
+        });
+        let next = non_negative(cross, masses, wanted);
+        // Lanes that carry nothing are as if visited alone.
+        let carries = held.iter().fold(zero, |sum, held| sum + *held);
+        let carries = zero.lt(carries);
+        let next: [L; POINTS] = std::array::from_fn(|k| L::select(carries, next[k], held[k]));
+        for k in 0..POINTS {
+            normals.push(c, k, masses[k] * (next[k] - held[k]));
+            c.points[k].held = next[k];
+        }
+        normals.end(c, &mut a, &mut b);
+        if FRICTION {
+            c.solve_friction(&mut a, &mut b);
+        }
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+    }
+}
