@@ -2,13 +2,13 @@
 //!
 //! A contact is a damped spring of angular frequency ω = 2π·hz and damping ratio ζ, integrated implicitly:
 //! a₁ = 2ζ + hω, a₂ = hω·a₁, a₃ = 1/(1 + a₂); bias rate ω/a₁, mass scale a₂·a₃. The mass scale softens the diagonal
-//! of K, so that the points of a face are solved together (see [`super::block`]) and no impulse scale is needed.
+//! of K, so that the points of a face are solved together (see `block.rs`) and no impulse scale is needed.
 //! Recipe of a substep: predict velocities, warm start per body → push out ([`Push`]) → move → relax ([`Relax`]).
 //! Source: Catto, Solver2D (2024); the warm start per body and the moving velocity are ours.
 //!
 //! * **Moving velocity.** A substep moves a body by h·u. The push works on u, the relaxation on the velocity v at
 //!   the substep's end. For schemes of order ≥ 2 an impulse changes u by half of what it changes v by, for Euler
-//!   by all of it ([`crate::integrate::impulse_share`]); so resting bodies neither float nor sink, and a block
+//!   by all of it ([`crate::integrate::Plan::impulse_share`]); so resting bodies neither float nor sink, and a block
 //!   that slides stops where it should.
 //! * **Friction in the relaxation only**: friction that answers the push's velocities pumps tall stacks.
 //! * **Gaps.** A point apart by s > 0 may close by s in a substep, no more. The relaxation leaves points alone that
