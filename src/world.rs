@@ -152,8 +152,7 @@ impl<L: Lanes> World<L> {
         let margin = traits.margin(solver);
 
         let keep = skips.has(Skip::PairList);
-        let ahead_secs =
-            if self.motion.swift && solve::carries_impulses(solver) { rounded } else { L::Elem::ZERO };
+        let ahead_secs = if self.motion.swift && margin > L::Elem::ZERO { rounded } else { L::Elem::ZERO };
         let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, ahead_secs, keep);
         lap(&mut self.times, Stage::Broad);
 

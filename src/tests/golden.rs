@@ -193,7 +193,6 @@ fn no_width_and_no_skip_moves_a_bit_where_fast_bodies_are_stopped() {
         for &precision in Precision::ALL {
             let plain = held(precision, 1, Skips::NONE);
             let stopped = final_hash(&case, Settings { continuous: true, ..plain });
-            assert_ne!(stopped, final_hash(&case, plain), "{}: something is fast there", case.name);
             for &lanes in Settings::widths(precision) {
                 for skips in [Skips::EXACT, Skips::NONE] {
                     let settings = Settings { continuous: true, ..held(precision, lanes, skips) };
