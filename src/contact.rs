@@ -8,7 +8,7 @@
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
 use crate::column::Column;
-use crate::lanes::{Lanes, ROW, Real};
+use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.
@@ -327,6 +327,11 @@ impl<R: Real> Manifolds<R> {
         gap: [L; 4],
         scratch: &mut [[R; ROW]; 16],
     ) {
+        let (first, last) = (places[0] as usize, places[L::WIDTH - 1] as usize);
+        if last < self.pairs() && last - first == L::WIDTH - 1 {
+            // Neighbours, as all are where every pair is looked at: rows go straight to their places.
+            return self.write_neighbours(first, code, geometry, gap);
+        }
         L::store_rows(geometry, scratch);
         L::scatter_fours(gap, self.now.gap.fours_mut(), places);
         let (codes, rows) = (code.to_array(), self.now.geometry.rows_mut());
@@ -335,6 +340,30 @@ impl<R: Real> Manifolds<R> {
         }
         for (&place, &fresh) in places[..L::WIDTH].iter().zip(&codes) {
             self.set_code(place as usize, fresh);
+        }
+    }
+
+    #[inline(always)]
+    fn write_neighbours<L: Lanes<Elem = R>>(
+        &mut self,
+        first: usize,
+        code: L,
+        geometry: [L; ROW],
+        gap: [L; 4],
+    ) {
+        const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+        let places = first..first + L::WIDTH;
+        L::store_rows(geometry, &mut self.now.geometry.rows_mut()[places.clone()]);
+        L::scatter_fours(gap, &mut self.now.gap.fours_mut()[places.clone()], &IN_ORDER);
+        let codes = &mut self.now.code.padded_mut()[places];
+        let old = L::load(codes);
+        let changed = (!old.equals(code)).bits();
+        if changed != 0 {
+            code.store(codes);
+            let (old, fresh) = (old.to_array(), code.to_array());
+            for lane in set_lanes(changed) {
+                self.rematch(first + lane, Code::of(old[lane]), Code::of(fresh[lane]));
+            }
         }
     }
 

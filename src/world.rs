@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::body::{Bodies, BodyError, BodyId};
-use crate::broad::BroadPhase;
+use crate::broad::{BroadCounts, BroadPhase};
 use crate::contact::{Contact, Manifolds};
 use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
@@ -54,6 +54,17 @@ pub enum WorldError {
         /// What was asked for.
         asked: Precision,
     },
+}
+
+/// What a step found before bodies move.
+struct Seen {
+    found: BroadCounts,
+    /// Nothing has stirred since manifolds were found.
+    still: bool,
+    /// Pairs.
+    looked_at: usize,
+    /// The graph of contacts is another than before.
+    changed: bool,
 }
 
 /// Bodies, fields, and the memory a step works in.
@@ -146,86 +157,108 @@ impl<L: Lanes> World<L> {
         self.bodies.drive(dt_secs);
         self.steps += 1;
         let mut clock = Instant::now();
-        let mut lap = |times: &mut StageTimes, stage| times.lap(stage, &mut clock);
-        let Settings { solver, substeps, skips, .. } = self.settings;
+        let Settings { integrator, solver, substeps, skips, .. } = self.settings;
         let traits = self.traits.needed(skips);
-        let margin = traits.margin(solver);
 
+        let seen = self.find_contacts(traits, rounded, &mut clock);
+        let fields = std::mem::take(&mut self.fields);
+        let plan = Plan {
+            integrator,
+            fields: &fields,
+            h_secs: dt_secs / f64::from(substeps),
+            substeps,
+            skips,
+            moving: solve::pushes(solver),
+            carries: solve::carries_impulses(solver),
+        };
+        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let (mut skipped, finite) = if free_flight {
+            (self.disturbed, self.motion.swift) = (true, true);
+            let fast = self.continuous.begin(self.settings.continuous);
+            (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
+        } else {
+            let task = Task { solver, traits, dt_secs, plan: &plan };
+            let moved = self.move_in_contact(&task, &seen, &mut clock);
+            let fast = self.continuous.begin(self.settings.continuous);
+            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, task.bounce_threshold());
+            moved
+        };
+        self.fields = fields;
+        let (skin_m, margin) = (traits.touch(), traits.margin(solver));
+        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, &mut self.motion.stirred);
+        self.times.lap(Stage::Integrate, &mut clock);
+
+        let manifolds = &self.narrow.manifolds;
+        skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
+        self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, traits);
+        self.times.steps += 1;
+        self.check_finite(finite)?;
+        self.times.lap(Stage::Measure, &mut clock);
+        Ok(())
+    }
+
+    /// Brings pairs and their manifolds up to date, as far as something has moved.
+    fn find_contacts(&mut self, traits: Traits, dt_secs: L::Elem, clock: &mut Instant) -> Seen {
+        let Settings { solver, skips, broad, .. } = self.settings;
+        let margin = traits.margin(solver);
         let keep = skips.has(Skip::PairList);
-        let ahead_secs = if self.motion.swift && margin > L::Elem::ZERO { rounded } else { L::Elem::ZERO };
-        let found = self.broad.find::<L>(&self.bodies, self.settings.broad, margin, ahead_secs, keep);
-        lap(&mut self.times, Stage::Broad);
+        let ahead_secs = if self.motion.swift && margin > L::Elem::ZERO { dt_secs } else { L::Elem::ZERO };
+        let found = self.broad.find::<L>(&self.bodies, broad, margin, ahead_secs, keep);
+        self.times.lap(Stage::Broad, clock);
 
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
         // A new list can wait until something stirs: what was too far apart for a contact still is.
         self.undealt |= !found.kept;
         let still = reuse && !self.motion.any_stirred;
-        let (mut looked_at, mut changed) = (0, false);
+        let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
             self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
             if std::mem::take(&mut self.undealt) {
                 self.narrow.deal(&self.bodies, self.broad.pairs());
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
-            looked_at = self.narrow.choose(self.bodies.len(), stirred);
+            seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
             let narrow = &self.narrow;
             self.bodies.refresh_polygons_where(|slot| narrow.wants(slot));
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
-            changed = self.narrow.manifolds.refresh();
+            seen.changed = self.narrow.manifolds.refresh();
         }
-        lap(&mut self.times, Stage::Narrow);
+        self.times.lap(Stage::Narrow, clock);
+        seen
+    }
 
-        let (fields, moving) = (&self.fields[..], solve::pushes(solver));
-        let carries = solve::carries_impulses(solver);
-        let h_secs = dt_secs / f64::from(substeps);
-        let plan =
-            Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving, carries };
-        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
+    /// The substeps of a step with contacts; false if one broke off at a state that is not finite.
+    fn move_in_contact(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        seen: &Seen,
+        clock: &mut Instant,
+    ) -> (integrate::Skipped, bool) {
+        let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
+        if !seen.still {
+            solving.prepare(bodies, &mut self.narrow, seen.changed, motion);
+        }
+        let mut warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
+        self.times.lap(Stage::Prepare, clock);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
-        let fast = self.continuous.begin(self.settings.continuous);
-        if free_flight {
-            (self.disturbed, self.motion.swift) = (true, true);
-            skipped = integrate::fly::<L>(&plan, &mut self.bodies, fast);
-            lap(&mut self.times, Stage::Integrate);
-        } else {
-            let task = Task { solver, traits, dt_secs, plan: &plan };
-            let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-            if !still {
-                solving.prepare(bodies, &mut self.narrow, changed, motion);
+        for substep in 0..task.plan.substeps {
+            skipped = integrate::predict::<L>(task.plan, bodies, motion, warm);
+            warm = Warm::Onward;
+            self.times.lap(Stage::Integrate, clock);
+            solving.solve(task, motion, substep == 0);
+            self.times.lap(Stage::Solve, clock);
+            finite = integrate::advance::<L>(task.plan, bodies, motion);
+            self.times.lap(Stage::Integrate, clock);
+            if !finite {
+                // The next round's prediction would hide whether the solver began it.
+                break;
             }
-            let mut warm = solving.begin(&task, bodies, &mut self.narrow.manifolds, motion);
-            lap(&mut self.times, Stage::Prepare);
-            for substep in 0..substeps {
-                let first = substep == 0;
-                skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
-                warm = Warm::Onward;
-                lap(&mut self.times, Stage::Integrate);
-                solving.solve(&task, motion, first);
-                lap(&mut self.times, Stage::Solve);
-                finite = integrate::advance::<L>(&plan, bodies, motion);
-                lap(&mut self.times, Stage::Integrate);
-                if !finite {
-                    // The next round's prediction would hide whether the solver began it.
-                    break;
-                }
-                solving.settle(&task, bodies, &mut self.narrow.manifolds, motion);
-                lap(&mut self.times, Stage::Solve);
-            }
-            solving.end(&task, &self.narrow.manifolds, motion);
-            lap(&mut self.times, Stage::Solve);
-            integrate::finish::<L>(&mut self.bodies, motion, fast, task.bounce_threshold());
-            lap(&mut self.times, Stage::Integrate);
+            solving.settle(task, bodies, &mut self.narrow.manifolds, motion);
+            self.times.lap(Stage::Solve, clock);
         }
-        let skin_m = traits.touch();
-        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, &mut self.motion.stirred);
-        lap(&mut self.times, Stage::Integrate);
-
-        skipped.manifolds = (self.narrow.manifolds.pairs() - looked_at) as u64;
-        self.counts = Counts::of(found, &self.narrow.manifolds, free_flight, skipped, &self.bodies, traits);
-        self.times.steps += 1;
-        self.check_finite(finite)?;
-        lap(&mut self.times, Stage::Measure);
-        Ok(())
+        solving.end(task, &self.narrow.manifolds, motion);
+        self.times.lap(Stage::Solve, clock);
+        (skipped, finite)
     }
 
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.

@@ -119,6 +119,18 @@ impl<R> Task<'_, R> {
     }
 }
 
+/// Where today's gaps and impulses are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Latest {
+    /// In the pairs' rows.
+    #[default]
+    InPairs,
+    /// In the constraints.
+    InConstraints,
+    /// In the constraints, whose gaps have yet to hear of the last displacements.
+    BeforeDisplacements,
+}
+
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
@@ -130,10 +142,7 @@ pub struct Solving<L: Lanes> {
     recut: bool,
     /// The substep the impulses of the last step belong to, seconds.
     last_h_secs: f64,
-    /// Gaps and impulses are further on in the constraints than in the pairs' rows.
-    ahead: bool,
-    /// The last step's solver brought gaps up to date itself.
-    settled: bool,
+    latest: Latest,
     /// Something may bounce in this step.
     bouncing: bool,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
@@ -153,8 +162,7 @@ impl<L: Lanes> Default for Solving<L> {
             avbd: avbd::Avbd::default(),
             recut: true,
             last_h_secs: 0.0,
-            ahead: false,
-            settled: false,
+            latest: Latest::default(),
             bouncing: false,
             until_summed: 0,
         }
@@ -186,14 +194,14 @@ impl<L: Lanes> Solving<L> {
 
     /// Forgets what constraints hold: the pairs they belong to are gone.
     pub fn forget(&mut self) {
-        (self.ahead, self.until_summed) = (false, 0);
+        (self.latest, self.until_summed) = (Latest::InPairs, 0);
     }
 
     /// Hands gaps and impulses back to the pairs, before manifolds are found anew.
     pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
-        if std::mem::take(&mut self.ahead) {
-            let moved = self.yet_to_follow(motion);
-            self.stream.end(manifolds, moved);
+        if self.latest != Latest::InPairs {
+            self.stream.end(manifolds, self.yet_to_follow(motion));
+            self.latest = Latest::InPairs;
         }
     }
 
@@ -241,7 +249,7 @@ impl<L: Lanes> Solving<L> {
         let h_secs = task.plan.h_secs;
         let rows = motion.velocity.fours_mut();
         // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
-        let moved = (!first || self.ahead).then_some(motion.moved.fours());
+        let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());
         let stream = &mut self.stream;
         match task.solver {
             Solver::Soft => {
@@ -357,10 +365,10 @@ impl<L: Lanes> Solving<L> {
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        self.settled = matches!(task.solver, Solver::Xpbd | Solver::Avbd);
+        let settled = matches!(task.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing {
             self.follow_pairs(task, manifolds, motion);
-            let moved = (!self.settled).then_some(motion.moved.fours());
+            let moved = (!settled).then_some(motion.moved.fours());
             self.stream.visit(&mut soft::Bounce {
                 rows: motion.velocity.fours_mut(),
                 touch: L::lit(task.traits.touch()),
@@ -368,7 +376,11 @@ impl<L: Lanes> Solving<L> {
                 bounces: &mut self.bounces,
             });
         }
-        self.ahead = task.solver != Solver::Avbd;
+        self.latest = match task.solver {
+            Solver::Avbd => Latest::InPairs,
+            Solver::Xpbd => Latest::InConstraints,
+            Solver::Soft | Solver::Pgs | Solver::Impulse => Latest::BeforeDisplacements,
+        };
     }
 
     /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
@@ -393,7 +405,7 @@ impl<L: Lanes> Solving<L> {
         motion: &Motion<L::Elem>,
     ) -> Manifolds<L::Elem> {
         let mut manifolds = manifolds.clone();
-        if self.ahead {
+        if self.latest != Latest::InPairs {
             self.stream.clone().end(&mut manifolds, self.yet_to_follow(motion));
         }
         manifolds
@@ -401,7 +413,7 @@ impl<L: Lanes> Solving<L> {
 
     /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
     fn yet_to_follow<'a>(&self, motion: &'a Motion<L::Elem>) -> Option<&'a [[L::Elem; 4]]> {
-        (!self.settled).then_some(motion.moved.fours())
+        (self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours())
     }
 
     /// The colours.

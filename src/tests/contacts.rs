@@ -198,8 +198,8 @@ fn balls_bounce_as_high_as_their_restitution_says() {
             let lost = 1.0 - pair[1] / pair[0];
             assert!(lost.abs() < 1e-3, "bounce {n}: {lost} of {} m in {precision}", pair[0]);
         }
-        for (n, height) in heights(0.5, 3, precision).into_iter().enumerate() {
-            let expected = 2.0 * 0.25_f64.powi(n as i32 + 1);
+        for (n, height) in (1..).zip(heights(0.5, 3, precision)) {
+            let expected = 2.0 * 0.25_f64.powi(n);
             assert!((height - expected).abs() < 1e-3 * expected.max(1.0), "{n}: {height} for {expected} m");
         }
     }
@@ -245,10 +245,7 @@ fn reused_manifolds_keep_overlaps_within_their_bound() {
 fn a_sliding_disc_ends_rolling_at_two_thirds_of_its_speed() {
     let floor = BodySpec::new(ShapeSpec::Box([60.0, 0.5]), [0.0, -0.5]).surface(0.0, 0.5).fixed();
     let ball = BodySpec { position: [0.0, 0.1], ..disc([0.0; 2]) }.moving([3.0, 0.0], 0.0).surface(0.0, 0.5);
-    let radius = match ball.shape {
-        ShapeSpec::Circle(radius) => radius,
-        _ => unreachable!("a disc"),
-    };
+    let ShapeSpec::Circle(radius) = ball.shape else { unreachable!("a disc") };
     let ball = BodySpec { position: [0.0, radius], ..ball };
     let mut world = start(&scene_of(vec![floor, ball], Forces::gravity()), Settings::default());
     step(&mut *world, 60);

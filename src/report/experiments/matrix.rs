@@ -43,6 +43,9 @@ pub const HEADLINE_INTEGRATOR: Integrator = Integrator::VelocityVerlet;
 /// Beside the default's, at 8 lanes: half the work, a few times the overlap, far less than the thesis's.
 const FEW_SUBSTEPS: u32 = 2;
 
+/// Steps between taking over a settled pile and timing it.
+const REST_STEPS: usize = 120;
+
 /// Windows of steps, in which all engines take turns.
 #[derive(Clone, Copy, Debug)]
 struct Windows {
@@ -145,8 +148,12 @@ fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<En
         let all_widths = plan.lanes.iter().map(|&lanes| (lanes, Settings::default().substeps));
         let few = (integrator == HEADLINE_INTEGRATOR).then_some((8, FEW_SUBSTEPS));
         for (lanes, substeps) in all_widths.chain(few) {
-            let world =
-                settled.with_settings(Settings { integrator, lanes, substeps, ..Settings::default() })?;
+            let settings = Settings { integrator, substeps, lanes, ..Settings::default() };
+            let mut world = settled.with_settings(settings)?;
+            // A new world knows no impulses, and other substeps sag otherwise.
+            for _ in 0..REST_STEPS {
+                world.step(super::DT_SECS)?;
+            }
             entries.push(Entry {
                 integrator,
                 engine: "lamina2d",
