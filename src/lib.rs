@@ -24,7 +24,7 @@
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`] | the stages; they never import each other |
-//! | [`contact`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; fields; columns; driven bodies; shapes |
+//! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
 //! # One step
@@ -33,21 +33,21 @@
 //! | drive | pose of bodies with a pivot | their velocity |
 //! | broad | position, bounding radius, attitude of long bodies | candidate pairs, a < b, in order |
 //! | narrow | pose, shape, pairs | manifolds, polygons' world rows |
-//! | prepare | manifolds, last impulses | carried impulses, colours, batches |
+//! | prepare | manifolds, last impulses; joints, pose | carried impulses, colours, batches; arms and gaps of joints |
 //! | per substep: predict | position, velocity, fields | solver rows, free velocity, displacement |
-//! | per substep: solve | manifolds, batches, rows | rows, impulses |
+//! | per substep: solve | batches of joints, then of contacts, rows | rows, impulses |
 //! | per substep: correct | rows | velocity, displacement since the step began |
 //! | finish | displacement | position, attitude |
 //! | measure | pose, velocity | finite check, counts |
 //!
-//! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]).
+//! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]).
 //!
 //! # Invariants
 //! 1. Lane width, thread count, debug or release never change a bit of a result. Kernels use + − × ÷ √,
 //!    comparisons and select; no fused or approximate operation, no sum across lanes. Golden hashes
 //!    (`src/tests/golden.rs`) hold every width and build to it.
 //! 2. Columns are whole lanes; padding is inert (no mass, out of reach). There are no tail loops.
-//! 3. A colour holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
+//! 3. A colour of contacts, or of joints, holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
 //! 4. Enums are matched once per stage, bucket or block, never per lane value. Width 1 is the scalar version.
 //! 5. After warm-up a step allocates only where a count reaches a new maximum.
 //! 6. A kernel answers for each lane as if it were alone: which pairs share a batch changes nothing.
@@ -76,6 +76,7 @@ pub mod contact;
 pub mod drive;
 pub mod force;
 pub mod integrate;
+pub mod joint;
 pub mod lanes;
 pub mod measure;
 pub mod narrow;

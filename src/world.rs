@@ -1,4 +1,4 @@
-//! A world: bodies, fields, and the step that advances them.
+//! A world: bodies, joints, fields, and the step that advances them.
 
 use std::time::Instant;
 
@@ -7,6 +7,7 @@ use crate::broad::BroadPhase;
 use crate::contact::{Contact, Manifolds};
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan};
+use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::{Narrow, Stirred};
@@ -55,16 +56,19 @@ pub enum WorldError {
     },
 }
 
-/// Bodies, fields, and the memory a step works in.
+/// Bodies, joints, fields, and the memory a step works in.
 #[derive(Clone, Debug)]
 pub struct World<L: Lanes> {
     bodies: Bodies<L::Elem>,
+    joints: Joints<L::Elem>,
     forces: Forces,
     settings: Settings,
     fields: Vec<Field<L::Elem>>,
     traits: Traits,
     /// Revision and removals of the bodies last looked over.
     inspected: Option<(u64, u64)>,
+    /// Revision of the joints last looked over.
+    inspected_joints: u64,
     broad: BroadPhase<L::Elem>,
     narrow: Narrow<L::Elem>,
     solving: Solving<L>,
@@ -94,15 +98,31 @@ impl<L: Lanes> World<L> {
         forces: Forces,
         settings: Settings,
     ) -> Result<Self, WorldError> {
+        Self::from_parts(bodies, Joints::default(), forces, settings)
+    }
+
+    /// A world around existing bodies and the joints between them; those of which a body is gone go with the first
+    /// step.
+    ///
+    /// # Errors
+    /// Settings or fields that cannot be run with.
+    pub fn from_parts(
+        bodies: Bodies<L::Elem>,
+        joints: Joints<L::Elem>,
+        forces: Forces,
+        settings: Settings,
+    ) -> Result<Self, WorldError> {
         settings.check()?;
         forces.check_in::<L::Elem>().map_err(SceneError::from)?;
         Ok(Self {
             bodies,
+            joints,
             forces,
             settings,
             fields: Vec::new(),
             traits: Traits::default(),
             inspected: None,
+            inspected_joints: 0,
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
             solving: Solving::default(),
@@ -114,14 +134,21 @@ impl<L: Lanes> World<L> {
         })
     }
 
-    /// A world with the bodies of a scene, in their order: the k-th is in slot k + 1.
+    /// A world with the bodies and joints of a scene, in their order: the k-th body is in slot k + 1.
     ///
     /// # Errors
-    /// Settings, fields or bodies that cannot be run with.
+    /// Settings, fields, bodies or joints that cannot be run with.
     pub fn from_scene(scene: &Scene, settings: Settings) -> Result<Self, WorldError> {
         let mut world = Self::new(scene.forces, settings)?;
-        for spec in &scene.bodies {
-            world.insert(spec).map_err(SceneError::from)?;
+        let insert = |spec| world.insert(spec).map_err(SceneError::from);
+        let ids: Vec<_> = scene.bodies.iter().map(insert).collect::<Result<_, _>>()?;
+        for (joint, spec) in scene.joints.iter().enumerate() {
+            let id = |body: usize| {
+                let missing = JointError::MissingBody { joint, body, bodies: ids.len() };
+                ids.get(body).copied().ok_or(SceneError::from(missing))
+            };
+            let ends = [id(spec.bodies[0])?, id(spec.bodies[1])?];
+            world.insert_joint(ends, spec.kind.clone(), spec.collide).map_err(SceneError::from)?;
         }
         Ok(world)
     }
@@ -165,7 +192,8 @@ impl<L: Lanes> World<L> {
         let (fields, moving) = (&self.fields[..], solve::pushes(solver));
         let h_secs = dt_secs / f64::from(substeps);
         let plan = Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving };
-        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let loose = self.narrow.manifolds.is_empty() && self.joints.is_empty();
+        let free_flight = loose && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         if free_flight {
             self.disturbed = true;
@@ -175,6 +203,7 @@ impl<L: Lanes> World<L> {
             let task = Task { solver, traits, dt_secs, plan: &plan };
             let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
             solving.prepare(bodies, &mut self.narrow, changed, motion);
+            solving.prepare_joints(&task, bodies, &self.joints);
             solving.begin(&task, bodies, motion);
             lap(&mut self.times, Stage::Prepare);
             for substep in 0..substeps {
@@ -193,6 +222,7 @@ impl<L: Lanes> World<L> {
                 lap(&mut self.times, Stage::Solve);
             }
             solving.end(&task, &mut self.narrow.manifolds, motion);
+            solving.end_joints(&mut self.joints);
             lap(&mut self.times, Stage::Solve);
             integrate::finish::<L>(&mut self.bodies, motion);
             lap(&mut self.times, Stage::Integrate);
@@ -218,10 +248,18 @@ impl<L: Lanes> World<L> {
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.
     fn inspect(&mut self) {
         let seen = (self.bodies.revision(), self.bodies.removals());
+        let removed = self.inspected.is_none_or(|(_, removals)| removals != seen.1);
+        if removed && !self.joints.is_empty() {
+            self.joints.prune(&self.bodies);
+        }
+        if self.inspected_joints != self.joints.revision() {
+            self.inspected_joints = self.joints.revision();
+            self.broad.keep_apart(self.joints.apart());
+        }
         if self.inspected == Some(seen) {
             return;
         }
-        if self.inspected.is_none_or(|(_, removals)| removals != seen.1) {
+        if removed {
             self.narrow.manifolds.forget();
             self.motion.forget_drift();
         }
@@ -269,12 +307,35 @@ impl<L: Lanes> World<L> {
         self.bodies.insert(spec)
     }
 
-    /// Takes a body out.
+    /// Takes a body out, and the joints it has.
     ///
     /// # Errors
     /// An id whose body is gone.
     pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
-        self.bodies.remove(id)
+        self.bodies.remove(id)?;
+        self.joints.prune(&self.bodies);
+        Ok(())
+    }
+
+    /// Joins bodies A and B as they stand; unless they `collide`, they pass through each other from now on.
+    ///
+    /// # Errors
+    /// Those of [`Joints::insert`].
+    pub fn insert_joint(
+        &mut self,
+        bodies: [BodyId; 2],
+        kind: JointKind,
+        collide: bool,
+    ) -> Result<JointId, JointError> {
+        self.joints.insert(&self.bodies, bodies, kind, collide)
+    }
+
+    /// Takes a joint out.
+    ///
+    /// # Errors
+    /// An id whose joint is gone.
+    pub fn remove_joint(&mut self, id: JointId) -> Result<(), JointError> {
+        self.joints.remove(id)
     }
 
     /// Adds an impulse; see [`Bodies::apply_impulse`].
@@ -293,6 +354,10 @@ impl<L: Lanes> World<L> {
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
         self.disturbed = true;
         &mut self.bodies
+    }
+    /// The joints.
+    pub fn joints(&self) -> &Joints<L::Elem> {
+        &self.joints
     }
     /// The fields.
     pub fn forces(&self) -> &Forces {

@@ -97,6 +97,7 @@ pub struct Counts {
 }
 
 impl Counts {
+    #[expect(clippy::too_many_arguments, reason = "one value from each stage, named at its only call")]
     pub(crate) fn of<R: Real>(
         found: BroadCounts,
         reused: usize,

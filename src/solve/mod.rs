@@ -1,13 +1,24 @@
-//! Solvers: one per file, all on the same manifolds, colours and stream of constraints.
+//! Solvers: one per file, all on the same manifolds, joints, colours and streams of constraints.
 //!
 //! A solver changes velocities and displacements in the rows of [`crate::integrate::Motion`] and the impulses
 //! in its constraints, nothing else. Contacts of one colour share no dynamic body, so the lanes of a batch never
 //! meet; static and kinematic bodies may occur in many lanes, but no mass moves them and their rows keep their values.
+//! Joints are coloured likewise among themselves, and each pass visits them before the contacts: what was solved last
+//! holds best, and a stretched joint is seen less than bodies in each other.
+//!
+//! | part of a step | joints | contacts |
+//! |---|---|---|
+//! | prepare | [`Solving::prepare_joints`]: joints and poses → constraints | [`Solving::prepare`]: manifolds → constraints |
+//! | [`Solving::begin`] | impulses → rows | impulses → rows; approaches |
+//! | [`Solving::solve`] | rows → rows, impulses | rows → rows, impulses |
+//! | [`Solving::settle`] (`soft`) | rows, displacements → rows, impulses, arms | rows → rows, impulses |
+//! | end | [`Solving::end_joints`]: impulses, angles → joints | [`Solving::end`]: gaps, impulses → manifolds |
 
 mod block;
 pub mod color;
 pub mod constraint;
 mod impulse;
+pub mod joint;
 mod pgs;
 pub mod soft;
 pub mod stream;
@@ -15,11 +26,13 @@ pub mod stream;
 use crate::body::Bodies;
 use crate::contact::Manifolds;
 use crate::integrate::{Motion, Plan};
+use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::narrow::Narrow;
 use crate::settings::{Skip, Skips, Solver};
 
 use color::Coloring;
+use joint::{JointStream, Stiffness};
 use soft::Softness;
 use stream::{Stream, WarmStart};
 
@@ -91,6 +104,7 @@ pub struct Task<'a, R> {
 pub struct Solving<L: Lanes> {
     coloring: Coloring,
     stream: Stream<L>,
+    joints: JointStream<L>,
     bounces: soft::Bounces<L>,
     /// The substep the impulses of the last step belong to, seconds.
     last_h_secs: f64,
@@ -101,6 +115,7 @@ impl<L: Lanes> Default for Solving<L> {
         Self {
             coloring: Coloring::default(),
             stream: Stream::default(),
+            joints: JointStream::default(),
             bounces: soft::Bounces::default(),
             last_h_secs: 0.0,
         }
@@ -128,6 +143,17 @@ impl<L: Lanes> Solving<L> {
         self.stream.begin(&narrow.manifolds, motion.matter.fours());
     }
 
+    /// Makes constraints of joints, where they, bodies or the substep have changed, and finds where they are.
+    pub fn prepare_joints(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        joints: &Joints<L::Elem>,
+    ) {
+        self.joints.prepare(joints, bodies, task.plan.h_secs, task.plan.impulse_share());
+        self.joints.place(bodies);
+    }
+
     /// Before the first substep: what bounces is noted, and the rows get what the warm start adds.
     pub fn begin(
         &mut self,
@@ -146,25 +172,29 @@ impl<L: Lanes> Solving<L> {
             });
         }
         motion.clear_rows();
+        let rows = motion.velocity.fours_mut();
         if carries_impulses(task.solver) {
             let (h, last) = (task.plan.h_secs, self.last_h_secs);
             let share = if last > 0.0 { h / last } else { 1.0 };
-            let rows = motion.velocity.fours_mut();
+            self.joints.warm_start(rows, share);
             self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(share) });
+        } else {
+            self.joints.warm_start(rows, 0.0);
         }
         self.last_h_secs = task.plan.h_secs;
     }
 
-    /// Contacts of one substep, before bodies move.
+    /// Joints, then contacts of one substep, before bodies move.
     pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
         let Traits { friction, restitution, length, gravity } = task.traits;
         let h_secs = task.plan.h_secs;
         let rows = motion.velocity.fours_mut();
         let moved = (!first).then_some(motion.moved.fours());
-        let stream = &mut self.stream;
+        let (stream, joints) = (&mut self.stream, &mut self.joints);
         match task.solver {
             Solver::Soft => {
                 let share = task.plan.impulse_share();
+                joints.push(rows, None, &Stiffness::soft(h_secs, share));
                 let cap = soft::PUSH_CAP * length / task.dt_secs;
                 stream.visit(&mut soft::Push {
                     rows,
@@ -179,6 +209,7 @@ impl<L: Lanes> Solving<L> {
                 let bias_rate = L::lit(pgs::BAUMGARTE / h_secs);
                 for iteration in 0..pgs::ITERATIONS {
                     let moved = moved.filter(|_| iteration == 0);
+                    joints.push(rows, moved, &Stiffness::baumgarte(h_secs));
                     if friction {
                         stream.visit(&mut pgs::Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
                     } else {
@@ -187,16 +218,17 @@ impl<L: Lanes> Solving<L> {
                 }
             }
             Solver::Impulse => {
+                joints.push(rows, moved, &Stiffness::baumgarte(h_secs));
                 let threshold = L::lit(BOUNCE_STEPS * gravity * task.dt_secs);
                 match (friction, restitution) {
                     (true, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold });
                     }
                     (true, false) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold });
                     }
                     (false, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold });
                     }
                     (false, false) => {
                         stream.visit(&mut impulse::Resolve::<L, false, false> { rows, moved, threshold });
@@ -206,11 +238,13 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// Contacts of one substep, after bodies moved.
+    /// Joints, then contacts of one substep, after bodies moved.
     pub fn settle(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>) {
         match task.solver {
             Solver::Soft => {
                 let (rows, per_sec) = (motion.velocity.fours_mut(), L::lit(1.0 / task.plan.h_secs));
+                let how = Stiffness::soft(task.plan.h_secs, task.plan.impulse_share());
+                self.joints.relax(rows, motion.moved.fours(), &how);
                 if task.traits.friction {
                     self.stream.visit(&mut soft::Relax::<L, true> { rows, per_sec });
                 } else {
@@ -244,6 +278,15 @@ impl<L: Lanes> Solving<L> {
         self.stream.end(manifolds, motion.moved.fours());
     }
 
+    /// Hands impulses and angles back to the joints.
+    pub fn end_joints(&mut self, joints: &mut Joints<L::Elem>) {
+        self.joints.end(joints);
+    }
+
+    /// The joints' constraints.
+    pub fn joints(&self) -> &JointStream<L> {
+        &self.joints
+    }
     /// The colours.
     pub fn coloring(&self) -> &Coloring {
         &self.coloring

@@ -86,7 +86,7 @@ struct Case {
     integrator: Integrator,
 }
 
-/// The four mixes and the other named scenes as they stand, and all fields with every integrator.
+/// The four mixes and the other named scenes as they stand, all fields with every integrator, and joints.
 fn cases() -> Vec<Case> {
     let names = [
         "circles/150",
@@ -109,7 +109,12 @@ fn cases() -> Vec<Case> {
         scene: fields.clone(),
         integrator,
     });
-    named.chain(integrated).collect()
+    let jointed = Case {
+        name: "chain/30".to_owned(),
+        scene: by_name("chain/30", None, 1).unwrap(),
+        integrator: Integrator::VelocityVerlet,
+    };
+    named.chain(integrated).chain([jointed]).collect()
 }
 
 /// The state hash after the scene's own number of steps, or why there is none.
