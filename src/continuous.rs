@@ -67,13 +67,15 @@ impl<R: Real> Continuous<R> {
     }
 
     /// Moves the fast bodies of a step of `dt_secs` back to where they meet something. `skin_m`: what counts as
-    /// touching, metres; `margin`: gaps the solver hears of; bodies moved back are marked in `stirred`.
+    /// touching, metres; `margin`: gaps the solver hears of; `apart`: pairs that do not collide, ordered; bodies moved
+    /// back are marked in `stirred`.
     pub fn stop(
         &mut self,
         bodies: &mut Bodies<R>,
         skin_m: f64,
         margin: R,
         dt_secs: f64,
+        apart: &[[u32; 2]],
         stirred: &mut [bool],
     ) {
         for fast in &self.fast {
@@ -86,7 +88,8 @@ impl<R: Real> Continuous<R> {
             let reach = Reach::new(skin_m, margin > R::ZERO, bodies.core[slot].to_f64(), &sweep, R::EPSILON);
             let mut first: Option<(f64, Sweep)> = None;
             for &other in &self.obstacles {
-                if !bodies.may_collide(slot, other as usize) {
+                let pair = [other.min(slot as u32), other.max(slot as u32)];
+                if !bodies.may_collide(slot, other as usize) || apart.binary_search(&pair).is_ok() {
                     continue;
                 }
                 let obstacle = Sweep::of_obstacle(bodies, other as usize, dt_secs);

@@ -24,7 +24,7 @@
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
-//! | [`contact`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; fields; columns; driven bodies; shapes |
+//! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
 //! # One step
@@ -34,16 +34,17 @@
 //! | broad | position, bounding radius, attitude of long bodies; velocity where something is fast | candidate pairs, a < b, in order |
 //! | narrow, where bodies have stirred | pose, shape, pairs; velocity where something is fast | manifolds, polygons' world rows |
 //! | prepare, where manifolds are new | manifolds, their impulses, masses | colours, batches, constraints |
+//! | joints | pose; joints where they have changed | arms, gaps and angles; batches |
 //! | begin | constraints, velocity | warm start per body, approaches that will bounce |
 //! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement |
-//! | per substep: solve | constraints, rows | rows, impulses |
+//! | per substep: solve | constraints of joints, then of contacts, rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
 //! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
 //! | end, finish | rows, displacement | velocity, position, attitude, who stirred, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
 //! | measure | pose, velocity | finite check, counts |
 //!
-//! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
+//! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
 //! stirred since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
 //! and the warm start are still in place.
 //!
@@ -52,7 +53,7 @@
 //!    comparisons and select; no fused or approximate operation, no sum across lanes. Golden hashes
 //!    (`src/tests/golden.rs`) hold every width and build to it.
 //! 2. Columns are whole lanes; padding is inert (no mass, out of reach). There are no tail loops.
-//! 3. A colour holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
+//! 3. A colour of contacts, or of joints, holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
 //! 4. Enums are matched once per stage, bucket or block, never per lane value. Width 1 is the scalar version.
 //! 5. After warm-up a step allocates only where a count reaches a new maximum.
 //! 6. A kernel answers for each lane as if it were alone: which pairs share a batch changes nothing.
@@ -100,6 +101,7 @@ pub mod continuous;
 pub mod drive;
 pub mod force;
 pub mod integrate;
+pub mod joint;
 pub mod lanes;
 pub mod measure;
 pub mod narrow;

@@ -4,6 +4,8 @@
 use crate::body::{Bodies, Form};
 use crate::broad::BroadPhase;
 use crate::contact::Contact;
+use crate::force::Forces;
+use crate::joint::Joints;
 use crate::lanes::{Lanes, Real, f32s, f64s};
 use crate::measure::{self, Counts, Invariants, Outline, Penetration, StageTimes};
 use crate::scene::{BodyKind, Scene};
@@ -60,7 +62,9 @@ pub trait Simulation: Send {
     fn broad_in_use(&self) -> Broad;
     /// A copy that goes its own way.
     fn duplicate(&self) -> Box<dyn Simulation>;
-    /// A world of other settings in the same state: bodies, poses and velocities to the bit.
+    /// Where the anchors of each joint lie, on its bodies A and B, metres.
+    fn joint_anchors(&self) -> Vec<[[f64; 2]; 2]>;
+    /// A world of other settings in the same state: bodies, joints, poses and velocities to the bit.
     ///
     /// # Errors
     /// Settings that cannot be run with, or of another precision.
@@ -85,55 +89,45 @@ pub fn simulate(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>
 
 fn boxed<L: Lanes>(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>
 where
-    Bodies<L::Elem>: IntoWorld,
+    (Bodies<L::Elem>, Joints<L::Elem>): IntoWorld,
 {
     Ok(Box::new(World::<L>::from_scene(scene, settings)?))
 }
 
-/// Columns of a precision, into a world of any of its widths.
+/// Bodies and joints of a precision, into a world of any of its widths.
 pub trait IntoWorld: Sized {
-    /// Builds the world that `settings` name around these bodies.
+    /// Builds the world that `settings` name around these bodies and joints.
     ///
     /// # Errors
     /// Settings that cannot be run with, or of another precision.
-    fn into_world(
-        self,
-        forces: crate::force::Forces,
-        settings: Settings,
-    ) -> Result<Box<dyn Simulation>, WorldError>;
+    fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>;
 }
 
-impl IntoWorld for Bodies<f32> {
-    fn into_world(
-        self,
-        forces: crate::force::Forces,
-        settings: Settings,
-    ) -> Result<Box<dyn Simulation>, WorldError> {
+impl IntoWorld for (Bodies<f32>, Joints<f32>) {
+    fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
+        let (bodies, joints) = self;
         Ok(match settings.lanes {
-            1 => Box::new(World::<f32s::X1>::from_bodies(self, forces, settings)?),
-            4 => Box::new(World::<f32s::X4>::from_bodies(self, forces, settings)?),
-            8 => Box::new(World::<f32s::X8>::from_bodies(self, forces, settings)?),
-            _ => Box::new(World::<f32s::X16>::from_bodies(self, forces, settings)?),
+            1 => Box::new(World::<f32s::X1>::from_parts(bodies, joints, forces, settings)?),
+            4 => Box::new(World::<f32s::X4>::from_parts(bodies, joints, forces, settings)?),
+            8 => Box::new(World::<f32s::X8>::from_parts(bodies, joints, forces, settings)?),
+            _ => Box::new(World::<f32s::X16>::from_parts(bodies, joints, forces, settings)?),
         })
     }
 }
 
-impl IntoWorld for Bodies<f64> {
-    fn into_world(
-        self,
-        forces: crate::force::Forces,
-        settings: Settings,
-    ) -> Result<Box<dyn Simulation>, WorldError> {
+impl IntoWorld for (Bodies<f64>, Joints<f64>) {
+    fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
+        let (bodies, joints) = self;
         Ok(match settings.lanes {
-            1 => Box::new(World::<f64s::X1>::from_bodies(self, forces, settings)?),
-            _ => Box::new(World::<f64s::X4>::from_bodies(self, forces, settings)?),
+            1 => Box::new(World::<f64s::X1>::from_parts(bodies, joints, forces, settings)?),
+            _ => Box::new(World::<f64s::X4>::from_parts(bodies, joints, forces, settings)?),
         })
     }
 }
 
 impl<L: Lanes> Simulation for World<L>
 where
-    Bodies<L::Elem>: IntoWorld,
+    (Bodies<L::Elem>, Joints<L::Elem>): IntoWorld,
 {
     fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
         self.step(dt_secs)
@@ -189,6 +183,10 @@ where
     fn pairs(&self) -> Vec<[u32; 2]> {
         self.pairs().to_vec()
     }
+    fn joint_anchors(&self) -> Vec<[[f64; 2]; 2]> {
+        let joints = self.joints();
+        joints.ids().filter_map(|id| joints.anchors_world(id, self.bodies()).ok()).collect()
+    }
     fn broad_in_use(&self) -> Broad {
         BroadPhase::<L::Elem>::resolve(self.settings().broad, self.bodies().live())
     }
@@ -199,6 +197,7 @@ where
         if settings.precision.name() != <L::Elem as Real>::NAME {
             return Err(WorldError::Precision { have: <L::Elem as Real>::NAME, asked: settings.precision });
         }
-        self.bodies().clone().into_world(*self.forces(), settings)
+        let parts = (self.bodies().clone(), self.joints().clone().without_impulses());
+        parts.into_world(*self.forces(), settings)
     }
 }

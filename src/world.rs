@@ -1,4 +1,4 @@
-//! A world: bodies, fields, and the step that advances them.
+//! A world: bodies, joints, fields, and the step that advances them.
 
 use std::time::Instant;
 
@@ -8,6 +8,7 @@ use crate::contact::{Contact, Manifolds};
 use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan, Warm};
+use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::{Narrow, Stirred};
@@ -67,16 +68,19 @@ struct Seen {
     changed: bool,
 }
 
-/// Bodies, fields, and the memory a step works in.
+/// Bodies, joints, fields, and the memory a step works in.
 #[derive(Clone, Debug)]
 pub struct World<L: Lanes> {
     bodies: Bodies<L::Elem>,
+    joints: Joints<L::Elem>,
     forces: Forces,
     settings: Settings,
     fields: Vec<Field<L::Elem>>,
     traits: Traits,
     /// Revision and removals of the bodies last looked over.
     inspected: Option<(u64, u64)>,
+    /// Revision of the joints last looked over.
+    inspected_joints: u64,
     broad: BroadPhase<L::Elem>,
     narrow: Narrow<L::Elem>,
     solving: Solving<L>,
@@ -109,15 +113,31 @@ impl<L: Lanes> World<L> {
         forces: Forces,
         settings: Settings,
     ) -> Result<Self, WorldError> {
+        Self::from_parts(bodies, Joints::default(), forces, settings)
+    }
+
+    /// A world around existing bodies and the joints between them; those of which a body is gone go with the first
+    /// step.
+    ///
+    /// # Errors
+    /// Settings or fields that cannot be run with.
+    pub fn from_parts(
+        bodies: Bodies<L::Elem>,
+        joints: Joints<L::Elem>,
+        forces: Forces,
+        settings: Settings,
+    ) -> Result<Self, WorldError> {
         settings.check()?;
         forces.check_in::<L::Elem>().map_err(SceneError::from)?;
         Ok(Self {
             bodies,
+            joints,
             forces,
             settings,
             fields: Vec::new(),
             traits: Traits::default(),
             inspected: None,
+            inspected_joints: 0,
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
             solving: Solving::default(),
@@ -131,14 +151,21 @@ impl<L: Lanes> World<L> {
         })
     }
 
-    /// A world with the bodies of a scene, in their order: the k-th is in slot k + 1.
+    /// A world with the bodies and joints of a scene, in their order: the k-th body is in slot k + 1.
     ///
     /// # Errors
-    /// Settings, fields or bodies that cannot be run with.
+    /// Settings, fields, bodies or joints that cannot be run with.
     pub fn from_scene(scene: &Scene, settings: Settings) -> Result<Self, WorldError> {
         let mut world = Self::new(scene.forces, settings)?;
-        for spec in &scene.bodies {
-            world.insert(spec).map_err(SceneError::from)?;
+        let insert = |spec| world.insert(spec).map_err(SceneError::from);
+        let ids: Vec<_> = scene.bodies.iter().map(insert).collect::<Result<_, _>>()?;
+        for (joint, spec) in scene.joints.iter().enumerate() {
+            let id = |body: usize| {
+                let missing = JointError::MissingBody { joint, body, bodies: ids.len() };
+                ids.get(body).copied().ok_or(SceneError::from(missing))
+            };
+            let ends = [id(spec.bodies[0])?, id(spec.bodies[1])?];
+            world.insert_joint(ends, spec.kind.clone(), spec.collide).map_err(SceneError::from)?;
         }
         Ok(world)
     }
@@ -171,7 +198,8 @@ impl<L: Lanes> World<L> {
             moving: solve::pushes(solver),
             carries: solve::carries_impulses(solver),
         };
-        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let loose = self.narrow.manifolds.is_empty() && self.joints.is_empty();
+        let free_flight = loose && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
             (self.disturbed, self.motion.swift) = (true, true);
             let fast = self.continuous.begin(self.settings.continuous);
@@ -185,7 +213,8 @@ impl<L: Lanes> World<L> {
         };
         self.fields = fields;
         let (skin_m, margin) = (traits.touch(), traits.margin(solver));
-        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, &mut self.motion.stirred);
+        let (apart, stirred) = (self.broad.kept_apart(), &mut self.motion.stirred);
+        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, apart, stirred);
         self.times.lap(Stage::Integrate, &mut clock);
 
         let manifolds = &self.narrow.manifolds;
@@ -238,6 +267,7 @@ impl<L: Lanes> World<L> {
         if !seen.still {
             solving.prepare(bodies, &mut self.narrow, seen.changed, motion);
         }
+        solving.prepare_joints(task, bodies, &self.joints);
         let mut warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
@@ -257,6 +287,7 @@ impl<L: Lanes> World<L> {
             self.times.lap(Stage::Solve, clock);
         }
         solving.end(task, &self.narrow.manifolds, motion);
+        solving.end_joints(&mut self.joints);
         self.times.lap(Stage::Solve, clock);
         (skipped, finite)
     }
@@ -264,10 +295,19 @@ impl<L: Lanes> World<L> {
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.
     fn inspect(&mut self) {
         let seen = (self.bodies.revision(), self.bodies.removals());
+        let removed = self.inspected.is_none_or(|(_, removals)| removals != seen.1);
+        if removed && !self.joints.is_empty() {
+            self.joints.prune(&self.bodies);
+        }
+        if self.inspected_joints != self.joints.revision() {
+            self.inspected_joints = self.joints.revision();
+            self.broad.keep_apart(self.joints.apart());
+            (self.disturbed, self.motion.swift) = (true, true);
+        }
         if self.inspected == Some(seen) {
             return;
         }
-        if self.inspected.is_none_or(|(_, removals)| removals != seen.1) {
+        if removed {
             self.narrow.manifolds.forget();
             self.solving.forget();
             self.motion.forget_drift();
@@ -318,12 +358,35 @@ impl<L: Lanes> World<L> {
         self.bodies.insert(spec)
     }
 
-    /// Takes a body out.
+    /// Takes a body out, and the joints it has.
     ///
     /// # Errors
     /// An id whose body is gone.
     pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
-        self.bodies.remove(id)
+        self.bodies.remove(id)?;
+        self.joints.prune(&self.bodies);
+        Ok(())
+    }
+
+    /// Joins bodies A and B as they stand; unless they `collide`, they pass through each other from now on.
+    ///
+    /// # Errors
+    /// Those of [`Joints::insert`].
+    pub fn insert_joint(
+        &mut self,
+        bodies: [BodyId; 2],
+        kind: JointKind,
+        collide: bool,
+    ) -> Result<JointId, JointError> {
+        self.joints.insert(&self.bodies, bodies, kind, collide)
+    }
+
+    /// Takes a joint out.
+    ///
+    /// # Errors
+    /// An id whose joint is gone.
+    pub fn remove_joint(&mut self, id: JointId) -> Result<(), JointError> {
+        self.joints.remove(id)
     }
 
     /// Adds an impulse; see [`Bodies::apply_impulse`].
@@ -343,6 +406,10 @@ impl<L: Lanes> World<L> {
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
         (self.disturbed, self.motion.swift) = (true, true);
         &mut self.bodies
+    }
+    /// The joints.
+    pub fn joints(&self) -> &Joints<L::Elem> {
+        &self.joints
     }
     /// The fields.
     pub fn forces(&self) -> &Forces {

@@ -114,6 +114,8 @@ pub struct BroadPhase<R: Real> {
     keep: keep::Keep<R>,
     kept: BroadCounts,
     revision: Option<u64>,
+    /// Pairs that may not collide for other reasons than their categories, ordered like `pairs`.
+    apart: Vec<[u32; 2]>,
 }
 
 impl<R: Real> Default for BroadPhase<R> {
@@ -129,6 +131,7 @@ impl<R: Real> Default for BroadPhase<R> {
             keep: keep::Keep::default(),
             kept: BroadCounts::default(),
             revision: None,
+            apart: Vec::new(),
         }
     }
 }
@@ -159,6 +162,17 @@ impl<R: Real> BroadPhase<R> {
         }
         let median = self.long.median_radius();
         if median.is_finite() { median } else { 0.0 }
+    }
+
+    /// Leaves these pairs out from now on: slots a < b, ordered by a, then b. The next list is found afresh.
+    pub fn keep_apart(&mut self, pairs: Vec<[u32; 2]>) {
+        self.apart = pairs;
+        self.keep.forget();
+    }
+
+    /// The pairs left out, see [`BroadPhase::keep_apart`].
+    pub fn kept_apart(&self) -> &[[u32; 2]] {
+        &self.apart
     }
 
     /// Finds all pairs closer than `margin` metres by their bounds now or, as they move now, within `ahead_secs`;
@@ -217,6 +231,14 @@ impl<R: Real> BroadPhase<R> {
             kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize));
         }
         self.pairs.truncate(kept);
+        if !self.apart.is_empty() {
+            // Both lists are in order: one walk along both.
+            let mut apart = self.apart.iter().copied().peekable();
+            self.pairs.retain(|pair| {
+                while apart.next_if(|next| next < pair).is_some() {}
+                apart.peek() != Some(pair)
+            });
+        }
     }
 
     /// Bytes held.

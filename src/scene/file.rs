@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use super::{BodySpec, Scene, SceneError};
 use crate::force::Forces;
+use crate::joint::JointSpec;
 use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver};
 
 /// The keys of a scene file.
@@ -18,6 +19,8 @@ struct File {
     forces: Forces,
     #[serde(default)]
     body: Vec<BodySpec>,
+    #[serde(default)]
+    joint: Vec<JointSpec>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -39,7 +42,7 @@ struct FileSettings {
 ///
 /// # Errors
 /// A file that cannot be read, is not TOML, has unknown keys or values of the wrong type, a bad field or
-/// setting; bodies are checked when a world takes them in.
+/// setting; bodies and joints are checked when a world takes them in.
 pub fn read(path: &str) -> Result<(Scene, Settings), SceneError> {
     let text = std::fs::read_to_string(path)
         .map_err(|e| SceneError::Unreadable { path: path.to_owned(), why: e.to_string() })?;
@@ -78,6 +81,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         name: path.to_owned(),
         about: file.about,
         bodies: file.body,
+        joints: file.joint,
         forces: file.forces,
         dt_secs: settings.dt_secs,
         steps,

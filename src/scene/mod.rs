@@ -6,6 +6,7 @@
 
 mod driven;
 pub mod file;
+pub mod jointed;
 pub mod mixes;
 pub mod named;
 mod stacks;
@@ -14,6 +15,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::force::Forces;
+use crate::joint::JointSpec;
 use crate::pair::{self, Pair};
 use crate::shape::{Shape, ShapeError};
 
@@ -203,7 +205,7 @@ impl BodySpec {
     }
 }
 
-/// What is simulated: bodies in order, and the fields they move in.
+/// What is simulated: bodies in order, the joints between them, and the fields they move in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Its name, with its parameter: `circles`, `stack/10`.
@@ -212,6 +214,8 @@ pub struct Scene {
     pub about: String,
     /// The bodies, in the order of their ids.
     pub bodies: Vec<BodySpec>,
+    /// The joints, in the order of their ids.
+    pub joints: Vec<JointSpec>,
     /// The fields.
     pub forces: Forces,
     /// The step it is meant to run with, seconds.
@@ -282,6 +286,9 @@ pub enum SceneError {
     /// A body is bad.
     #[error(transparent)]
     Body(#[from] crate::body::BodyError),
+    /// A joint is bad.
+    #[error(transparent)]
+    Joint(#[from] crate::joint::JointError),
     /// A setting in a file is bad.
     #[error("scene file {path}: {why}")]
     Setting {

@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{driven, stacks};
+use super::{driven, jointed, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -24,6 +24,10 @@ pub enum Takes {
     Ratio,
     /// A number of storeys of a house of cards.
     Levels,
+    /// A number of links of a chain.
+    Links,
+    /// A number of bodies along a side of a square.
+    Side,
 }
 
 impl Takes {
@@ -38,13 +42,18 @@ impl Takes {
             Self::Pyramids => "pyramids",
             Self::Ratio => "ratio",
             Self::Levels => "levels",
+            Self::Links => "links",
+            Self::Side => "side",
         }
     }
 
     /// The largest it may be: where it is not itself a number of bodies, what makes [`MAX_BODIES`] of them.
     pub const fn most(self) -> usize {
         match self {
-            Self::Nothing | Self::Bodies | Self::Pairs | Self::Height | Self::Ratio => MAX_BODIES,
+            Self::Nothing | Self::Bodies | Self::Pairs | Self::Height | Self::Ratio | Self::Links => {
+                MAX_BODIES
+            }
+            Self::Side => 1000,
             Self::Base => 1413,
             Self::Pyramids => 18_000,
             Self::Levels => 816,
@@ -61,6 +70,8 @@ impl Takes {
             Self::Base => ["a number of boxes in the lowest row (1 to 1413)", "must be 1 to 1413"],
             Self::Pyramids => ["a number of pyramids (1 to 18000)", "must be 1 to 18000"],
             Self::Ratio => ["a ratio of masses (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Links => ["a number of links (1 to 1000000)", "must be 1 to 1000000"],
+            Self::Side => ["a number of bodies along its side (1 to 1000)", "must be 1 to 1000"],
             Self::Levels => ["a number of levels (1 to 816)", "must be 1 to 816"],
         }
     }
@@ -243,6 +254,34 @@ pub const SCENES: &[SceneInfo] = &[
         about: "discs packed into a box without gravity, pushing each other about",
         build: |_, seed| driven::circles_confined(seed),
     },
+    SceneInfo {
+        name: "chain",
+        takes: Takes::Links,
+        default: 30,
+        about: "a chain of boxes that swings down from one end",
+        build: |n, _| jointed::chain(n, None),
+    },
+    SceneInfo {
+        name: "bridge",
+        takes: Takes::Links,
+        default: 40,
+        about: "a hanging bridge of planks, both ends fixed",
+        build: |n, _| jointed::bridge(n),
+    },
+    SceneInfo {
+        name: "joint_grid",
+        takes: Takes::Side,
+        default: 20,
+        about: "a square net of jointed circles, hung at its upper corners",
+        build: |n, _| jointed::joint_grid(n),
+    },
+    SceneInfo {
+        name: "pendulum",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a disc on a rod of 1 m, let go level",
+        build: |_, _| jointed::pendulum(),
+    },
 ];
 
 /// The largest number of bodies a named scene is built with.
@@ -287,6 +326,7 @@ pub(super) fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u
         name: String::new(),
         about: about.to_owned(),
         bodies,
+        joints: Vec::new(),
         forces,
         dt_secs: 1.0 / 60.0,
         steps,

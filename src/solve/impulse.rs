@@ -11,9 +11,10 @@
 //! The two points of a face are solved together, directly and by cases ([`non_negative`]): one after the
 //! other left a resting box turning at 0.02 rad/s and creeping sideways at 5 cm/s; together, neither.
 
+use super::Task;
 use super::block::{cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
-use super::stream::{Ends, Visit};
+use super::stream::{Ends, Stream, Visit};
 use crate::lanes::Lanes;
 
 /// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
@@ -21,15 +22,31 @@ pub(super) const CORRECTION_SHARE: f64 = 0.7;
 /// Depth left alone, over the scene's median radius (the thesis's 0.01 px over half its bodies' 25 px).
 pub(super) const SLOP: f64 = 1e-3;
 
+/// Velocities of all contacts. `moved`: displacements not yet known to the constraints.
+pub(super) fn resolve<L: Lanes>(
+    stream: &mut Stream<L>,
+    task: &Task<'_, L::Elem>,
+    rows: &mut [[L::Elem; 4]],
+    moved: Option<&[[L::Elem; 4]]>,
+) {
+    let threshold = L::lit(task.bounce_threshold());
+    match (task.traits.friction, task.traits.restitution) {
+        (true, true) => stream.visit(&mut Resolve::<L, true, true> { rows, moved, threshold }),
+        (true, false) => stream.visit(&mut Resolve::<L, true, false> { rows, moved, threshold }),
+        (false, true) => stream.visit(&mut Resolve::<L, false, true> { rows, moved, threshold }),
+        (false, false) => stream.visit(&mut Resolve::<L, false, false> { rows, moved, threshold }),
+    }
+}
+
 /// Velocities: one pass.
 #[derive(Debug)]
-pub(super) struct Resolve<'a, L: Lanes, const FRICTION: bool, const BOUNCE: bool> {
+struct Resolve<'a, L: Lanes, const FRICTION: bool, const BOUNCE: bool> {
     /// Velocities per slot: vx, vy, ω, 1/m.
-    pub(super) rows: &'a mut [[L::Elem; 4]],
+    rows: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` where gaps are up to date.
-    pub(super) moved: Option<&'a [[L::Elem; 4]]>,
+    moved: Option<&'a [[L::Elem; 4]]>,
     /// Slower approaches do not bounce, m/s.
-    pub(super) threshold: L,
+    threshold: L,
 }
 
 impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_, L, FRICTION, BOUNCE> {

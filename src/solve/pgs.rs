@@ -5,31 +5,49 @@
 //! λ_t ← clamp(λ_t − m_t·v_t, ±μ·λ_n). Overlap beyond the slop is pushed out as velocity, β·s/h, which stays in
 //! the bodies: this is what `soft` relaxes away. Source: Catto, Iterative Dynamics with Temporal Coherence, GDC 2005.
 
+use super::Task;
 use super::block::{answer, cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
-use super::stream::{Ends, Visit};
+use super::stream::{Ends, Stream, Visit};
 use crate::lanes::Lanes;
 
 /// Visits to each contact per substep.
 pub(super) const ITERATIONS: usize = 8;
 /// Share of the overlap beyond the slop that one substep takes away.
-pub(super) const BAUMGARTE: f64 = 0.2;
+const BAUMGARTE: f64 = 0.2;
 /// Overlap left alone, over the scene's median radius.
-pub(super) const SLOP: f64 = 1e-3;
+const SLOP: f64 = 1e-3;
+
+/// One iteration: all contacts once. `moved`: displacements not yet known to the constraints.
+pub(super) fn iterate<L: Lanes>(
+    stream: &mut Stream<L>,
+    task: &Task<'_, L::Elem>,
+    rows: &mut [[L::Elem; 4]],
+    moved: Option<&[[L::Elem; 4]]>,
+) {
+    let h_secs = task.plan.h_secs;
+    let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP * task.traits.length));
+    let bias_rate = L::lit(BAUMGARTE / h_secs);
+    if task.traits.friction {
+        stream.visit(&mut Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
+    } else {
+        stream.visit(&mut Pass::<L, false> { rows, moved, per_sec, bias_rate, slop });
+    }
+}
 
 /// One visit to all contacts.
 #[derive(Debug)]
-pub(super) struct Pass<'a, L: Lanes, const FRICTION: bool> {
+struct Pass<'a, L: Lanes, const FRICTION: bool> {
     /// Velocities per slot: vx, vy, ω, 1/m.
-    pub(super) rows: &'a mut [[L::Elem; 4]],
+    rows: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` where gaps are up to date.
-    pub(super) moved: Option<&'a [[L::Elem; 4]]>,
+    moved: Option<&'a [[L::Elem; 4]]>,
     /// 1/h.
-    pub per_sec: L,
+    per_sec: L,
     /// β/h.
-    pub bias_rate: L,
+    bias_rate: L,
     /// Overlap left alone, metres.
-    pub(super) slop: L,
+    slop: L,
 }
 
 impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {

@@ -42,17 +42,23 @@ pub struct Softness<L> {
     pub push_cap: L,
 }
 
+/// Bias rate, 1/s, and mass scale of a damped spring integrated implicitly over `h_secs`.
+pub(super) fn coefficients(h_secs: f64, hertz: f64, damping: f64) -> (f64, f64) {
+    let omega = 2.0 * std::f64::consts::PI * hertz;
+    let a1 = 2.0 * damping + h_secs * omega;
+    let a2 = h_secs * omega * a1;
+    let a3 = 1.0 / (1.0 + a2);
+    (omega / a1, a2 * a3)
+}
+
 impl<L: Lanes> Softness<L> {
     /// For substeps of `h_secs`, a frequency of `hertz` and overlaps pushed out at `push_cap` m/s at most.
     pub fn new(h_secs: f64, hertz: f64, damping: f64, push_cap: f64) -> Self {
-        let omega = 2.0 * std::f64::consts::PI * hertz;
-        let a1 = 2.0 * damping + h_secs * omega;
-        let a2 = h_secs * omega * a1;
-        let a3 = 1.0 / (1.0 + a2);
+        let (bias_rate, mass_scale) = coefficients(h_secs, hertz, damping);
         Self {
             per_sec: L::lit(1.0 / h_secs),
-            bias_rate: L::lit(omega / a1),
-            mass_scale: L::lit(a2 * a3),
+            bias_rate: L::lit(bias_rate),
+            mass_scale: L::lit(mass_scale),
             push_cap: L::lit(-push_cap),
         }
     }

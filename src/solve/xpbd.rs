@@ -18,30 +18,64 @@
 //!   and at mass ratios from 1000 on the lower box is pushed through the floor. Figures: [`super`].
 //! * **Impulses.** λ/(h·share) is what friction in [`Settle`] is bounded by, and what a report shows.
 
+use super::Task;
 use super::block::{answer, cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
-use super::stream::{Ends, Visit};
+use super::stream::{Ends, Stream, Visit};
 use crate::lanes::{LaneMask, Lanes};
 
 /// Compliance α of contacts, m/N.
-pub(super) const COMPLIANCE: f64 = 0.0;
+const COMPLIANCE: f64 = 0.0;
 /// Overlap from before the substep that one substep takes away at most: this share of the scene's median radius
 /// per step, spread over the substeps.
-pub(super) const PUSH_CAP: f64 = 0.1;
+const PUSH_CAP: f64 = 0.1;
+
+/// [`Project`] for all contacts.
+pub(super) fn project<L: Lanes>(
+    stream: &mut Stream<L>,
+    task: &Task<'_, L::Elem>,
+    moved: &mut [[L::Elem; 4]],
+    rows: &mut [[L::Elem; 4]],
+) {
+    let h_secs = task.plan.h_secs;
+    let cap = PUSH_CAP * task.traits.length / f64::from(task.plan.substeps);
+    let per_sec = L::lit(1.0 / (h_secs * task.plan.impulse_share()));
+    let (softness, push_cap) = (L::lit(COMPLIANCE / (h_secs * h_secs)), L::lit(-cap));
+    if task.traits.friction {
+        stream.visit(&mut Project::<L, true> { moved, rows, softness, per_sec, push_cap });
+    } else {
+        stream.visit(&mut Project::<L, false> { moved, rows, softness, per_sec, push_cap });
+    }
+}
+
+/// [`Settle`] for all contacts.
+pub(super) fn settle<L: Lanes>(
+    stream: &mut Stream<L>,
+    task: &Task<'_, L::Elem>,
+    moved: &[[L::Elem; 4]],
+    rows: &mut [[L::Elem; 4]],
+) {
+    let per_sec = L::lit(1.0 / task.plan.h_secs);
+    if task.traits.friction {
+        stream.visit(&mut Settle::<L, true> { moved, rows, per_sec });
+    } else {
+        stream.visit(&mut Settle::<L, false> { moved, rows, per_sec });
+    }
+}
 
 /// Displacements, and the velocities that follow from them.
 #[derive(Debug)]
-pub(super) struct Project<'a, L: Lanes, const FRICTION: bool> {
+struct Project<'a, L: Lanes, const FRICTION: bool> {
     /// Displacement of this substep per slot: x, y, angle, –.
-    pub(super) moved: &'a mut [[L::Elem; 4]],
+    moved: &'a mut [[L::Elem; 4]],
     /// Velocities per slot: vx, vy, ω, 1/m.
-    pub(super) rows: &'a mut [[L::Elem; 4]],
+    rows: &'a mut [[L::Elem; 4]],
     /// α̃ = α/h², 1/kg.
-    pub(super) softness: L,
+    softness: L,
     /// Velocity per displacement: 1/(h·share), 1/s.
-    pub(super) per_sec: L,
+    per_sec: L,
     /// −[`PUSH_CAP`] in metres per substep.
-    pub(super) push_cap: L,
+    push_cap: L,
 }
 
 impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
@@ -95,13 +129,13 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
 
 /// Velocities: points that carry something neither close nor part; dynamic friction. Gaps are brought up to date.
 #[derive(Debug)]
-pub(super) struct Settle<'a, L: Lanes, const FRICTION: bool> {
+struct Settle<'a, L: Lanes, const FRICTION: bool> {
     /// Displacement of this substep per slot: x, y, angle, –.
-    pub(super) moved: &'a [[L::Elem; 4]],
+    moved: &'a [[L::Elem; 4]],
     /// Velocities per slot: vx, vy, ω, 1/m.
-    pub(super) rows: &'a mut [[L::Elem; 4]],
+    rows: &'a mut [[L::Elem; 4]],
     /// 1/h.
-    pub(super) per_sec: L,
+    per_sec: L,
 }
 
 impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {

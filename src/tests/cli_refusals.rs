@@ -238,6 +238,58 @@ fn a_bad_body_is_refused_with_its_number_and_field() {
     }
 }
 
+/// Two discs 2 m apart and a static one between them; the second joint is bad.
+#[test]
+fn a_bad_joint_is_refused_with_its_number_and_field() {
+    let body =
+        |x: f64, more: &str| format!("[[body]]\nshape = {{ circle = 0.5 }}\nposition = [{x:?}, 0]\n{more}\n");
+    let bodies = [body(-1.0, ""), body(1.0, ""), body(0.0, "kind = 'static'"), body(9.0, "kind = 'static'")];
+    let good = "[[joint]]\nbodies = [0, 1]\nkind = { distance = {} }\n";
+    let table: &[(&str, &str, &[&str])] = &[
+        ("[0, 4]", "distance = {}", &["joint 1", "bodies", "no body 4", "has 4"]),
+        ("[1, 1]", "distance = {}", &["joint 1", "bodies", "slot 2", "itself"]),
+        ("[2, 3]", "distance = {}", &["joint 1", "dynamic", "static and static"]),
+        ("[0, 1]", "distance = { length = 0 }", &["joint 1", "length", "positive", "got 0"]),
+        ("[0, 1]", "distance = { length = -2 }", &["length", "got -2"]),
+        ("[0, 1]", "distance = { length = nan }", &["length", "NaN"]),
+        ("[0, 1]", "distance = { anchor_a = [3, 3], anchor_b = [3, 3] }", &["length", "got 0"]),
+        ("[0, 1]", "distance = { anchor_a = [inf, 3] }", &["anchor_a", "inf"]),
+        ("[0, 1]", "distance = { min = 3, max = 1 }", &["min", "above max", "3", "1"]),
+        ("[0, 1]", "distance = { min = -1 }", &["min", "at least 0", "got -1"]),
+        ("[0, 1]", "distance = { spring = { hertz = -3 } }", &["spring hertz", "positive", "got -3"]),
+        ("[0, 1]", "distance = { spring = { hertz = 3, damping = -1 } }", &["spring damping", "got -1"]),
+        ("[0, 1]", "revolute = { anchor = [nan, 0] }", &["anchor", "NaN"]),
+        (
+            "[0, 1]",
+            "revolute = { anchor = [0, 0], limits = { lower = 1, upper = -1 } }",
+            &["limits lower", "above limits upper", "1", "-1"],
+        ),
+        (
+            "[0, 1]",
+            "revolute = { anchor = [0, 0], motor = { speed = 1, max_torque = -5 } }",
+            &["motor max_torque", "at least 0", "got -5"],
+        ),
+        (
+            "[0, 1]",
+            "revolute = { anchor = [0, 0], motor = { speed = 1, max_torque = inf } }",
+            &["motor max_torque", "inf"],
+        ),
+        ("[0, 1]", "weld = { anchor = [0, inf] }", &["anchor", "inf"]),
+        ("[0, 1]", "weld = { anchor = [0, 0], spring = { hertz = nan } }", &["spring hertz", "NaN"]),
+        // Not a joint at all: refused with the file and its line.
+        ("[0, 1, 2]", "distance = {}", &["scene.toml", "two bodies", "got 3"]),
+        ("[0, -1]", "distance = {}", &["scene.toml", "-1"]),
+        ("[0, 1]", "glue = {}", &["scene.toml", "`glue`", "`weld`"]),
+        ("[0, 1]", "weld = { anchor = [0, 0], angle = 1 }", &["scene.toml", "`angle`"]),
+        ("[0, 1]", "weld = {}", &["scene.toml", "`anchor`"]),
+        ("[0, 1]", "weld = { anchor = [0, 0, 0] }", &["scene.toml", "two numbers", "got 3"]),
+    ];
+    for (ends, kind, mentions) in table {
+        let text = format!("{}{good}[[joint]]\nbodies = {ends}\nkind = {{ {kind} }}\n", bodies.concat());
+        run_file(&text, &["--steps", "1"]).fails(2, mentions);
+    }
+}
+
 #[test]
 fn a_bad_field_is_refused_by_name() {
     let table: &[(&str, &[&str])] = &[

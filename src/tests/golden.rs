@@ -89,7 +89,8 @@ struct Case {
     integrator: Integrator,
 }
 
-/// The four mixes and the other named scenes as they stand, and all fields with every integrator.
+/// The four mixes and other named scenes as they stand, all fields with every integrator; piles, driven bodies and
+/// joints as by default.
 fn cases() -> Vec<Case> {
     let names = [
         "circles/150",
@@ -112,7 +113,13 @@ fn cases() -> Vec<Case> {
         scene: fields.clone(),
         integrator,
     });
-    named.chain(integrated).collect()
+    let held = ["pyramid/20", "tumbler/100", "chain/30", "bridge/40", "joint_grid/10"];
+    let held = held.iter().map(|name| Case {
+        name: (*name).to_owned(),
+        scene: Scene { steps: 600, ..by_name(name, None, 1).unwrap() },
+        integrator: Integrator::VelocityVerlet,
+    });
+    named.chain(integrated).chain(held).collect()
 }
 
 /// The state hash after the scene's own number of steps, or why there is none.

@@ -52,6 +52,13 @@ fn resting_stacks_allocate_nothing() {
     hold(&named("stack/10"), Settings::default(), 600);
 }
 
+#[test]
+fn joints_allocate_nothing() {
+    for name in ["bridge/40", "pendulum", "joint_grid/8"] {
+        hold(&named(name), Settings::default(), 600);
+    }
+}
+
 /// One step is warm-up enough where nothing meets, though all fly apart and the grid gets more cells.
 #[test]
 fn free_flight_allocates_nothing_after_its_first_step() {

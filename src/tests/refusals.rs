@@ -1,16 +1,18 @@
 //! Everything that is refused, held against its whole message: the item, the field, the value.
 //!
-//! Bodies, fields, steps and settings, and scene files, one table each.
+//! Bodies, fields, steps and settings, scene files, and joints, one table each.
 
 mod common_motion;
 
 use common_motion::{disc, scene_of};
 use lamina2d::body::{Bodies, BodyError};
 use lamina2d::force::{Central, Forces, Spring};
+use lamina2d::joint::{Distance, JointKind, JointSpec, JointSpring, Limits, Motor, Revolute};
 use lamina2d::lanes::{Lanes, f32s, f64s};
-use lamina2d::scene::{BodyKind, BodySpec, ShapeSpec, file};
+use lamina2d::scene::{BodyKind, BodySpec, Scene, ShapeSpec, file};
 use lamina2d::settings::{Precision, Settings};
 use lamina2d::simulation::simulate;
+use lamina2d::thesis::{ThesisError, ThesisIntegrator, ThesisWorld, Version};
 use lamina2d::world::{StepError, World};
 
 /// What an `f32` world says to a body like a good one but for `change`, inserted as the third.
@@ -292,4 +294,86 @@ fn good_files_say_what_they_mean() {
     assert!(simulate(&scene, settings).is_ok());
     let missing = file::read("/nowhere/s.toml").unwrap_err().to_string();
     assert!(missing.starts_with("cannot read scene file /nowhere/s.toml: "), "{missing}");
+}
+
+#[test]
+fn bad_joints_are_refused_by_number_field_and_value() {
+    let bodies = vec![
+        disc([0.0; 2]),
+        disc([1.0, 0.0]),
+        disc([2.0, 0.0]).fixed(),
+        BodySpec { kind: BodyKind::Kinematic, ..disc([3.0, 0.0]) },
+    ];
+    let scene =
+        Scene { joints: vec![JointSpec::new(0, 1, JointKind::rod())], ..scene_of(bodies, Forces::default()) };
+    let mut world = World::<f32s::X8>::from_scene(&scene, Settings::default()).unwrap();
+    let gone = world.insert(&disc([9.0, 0.0])).unwrap();
+    world.remove(gone).unwrap();
+    let mut refused = |a: usize, b: usize, kind: JointKind| {
+        let id = |slot: usize| if slot == 5 { gone } else { world.bodies().id(slot).unwrap() };
+        let ends = [id(a), id(b)];
+        let before = world.joints().revision();
+        let message = world.insert_joint(ends, kind, false).unwrap_err().to_string();
+        assert_eq!((world.joints().revision(), world.joints().len()), (before, 1), "nothing has changed");
+        message
+    };
+    let length = |length| JointKind::Distance(Distance { length: Some(length), ..Distance::default() });
+    let bounds = |min, max| JointKind::Distance(Distance { min, max, ..Distance::default() });
+    let sprung = |hertz, damping| {
+        let spring = Some(JointSpring { hertz, damping });
+        JointKind::Distance(Distance { spring, ..Distance::default() })
+    };
+    let hinge = |motor, limits| JointKind::Revolute(Revolute { anchor: [0.0; 2], motor, limits });
+    let motor = |speed, max_torque| hinge(Some(Motor { speed, max_torque }), None);
+    let limits = |lower, upper| hinge(None, Some(Limits { lower, upper }));
+    let nan = f64::NAN;
+    let beyond = 1e39;
+    let finite = "is not finite in this precision:";
+    for (a, b, kind, message) in [
+        (1, 5, JointKind::rod(), "no living body has the id of slot 5, generation 0".to_owned()),
+        (1, 1, JointKind::rod(), "bodies: joins the body in slot 1 to itself; name two bodies".into()),
+        (
+            3,
+            4,
+            JointKind::rod(),
+            "bodies: one of the two must be dynamic, these are static and kinematic".into(),
+        ),
+        (1, 2, length(0.0), "length must be positive, got 0.0".into()),
+        (1, 2, length(-1.5), "length must be positive, got -1.5".into()),
+        (1, 2, length(nan), format!("length {finite} NaN")),
+        (1, 2, length(beyond), format!("length {finite} {beyond:?}")),
+        (1, 2, bounds(Some(2.0), Some(1.0)), "min must not be above max, got 2.0 and 1.0".into()),
+        (1, 2, bounds(Some(-1.0), None), "min must be at least 0, got -1.0".into()),
+        (1, 2, bounds(None, Some(0.0)), "max must be positive, got 0.0".into()),
+        (1, 2, bounds(None, Some(nan)), format!("max {finite} NaN")),
+        (1, 2, sprung(-1.0, 0.0), "spring hertz must be positive, got -1.0".into()),
+        (1, 2, sprung(nan, 0.0), format!("spring hertz {finite} NaN")),
+        (1, 2, sprung(1.0, -0.5), "spring damping must be at least 0, got -0.5".into()),
+        (1, 2, sprung(1.0, f64::INFINITY), format!("spring damping {finite} inf")),
+        (1, 2, motor(1.0, -2.0), "motor max_torque must be at least 0, got -2.0".into()),
+        (1, 2, motor(1.0, beyond), format!("motor max_torque {finite} {beyond:?}")),
+        (1, 2, motor(nan, 1.0), format!("motor speed {finite} NaN")),
+        (1, 2, limits(0.5, -0.5), "limits lower must not be above limits upper, got 0.5 and -0.5".into()),
+        (1, 2, limits(nan, 0.0), format!("limits lower {finite} NaN")),
+        (1, 2, JointKind::hinge([nan, 0.0]), format!("anchor {finite} NaN")),
+        (1, 2, JointKind::weld([0.0, f64::INFINITY]), format!("anchor {finite} inf")),
+        (
+            1,
+            2,
+            JointKind::weld([0.0, 1e16]),
+            "anchor must be less than 1e15 (f32) or 1e97 (f64) from the origin, got 1e16".into(),
+        ),
+    ] {
+        assert_eq!(refused(a, b, kind), format!("joint 1: {message}"));
+    }
+    let missing = Scene { joints: vec![JointSpec::new(0, 7, JointKind::rod())], ..scene };
+    let error = World::<f32s::X8>::from_scene(&missing, Settings::default()).err().unwrap();
+    assert_eq!(error.to_string(), "joint 0: bodies: there is no body 7, the scene has 4, numbered from 0");
+}
+
+#[test]
+fn the_baseline_takes_no_joints() {
+    let scene = lamina2d::scene::by_name("pendulum", None, 1).unwrap();
+    let error = ThesisWorld::new(&scene, ThesisIntegrator::Euler, Version::Tidy, true).unwrap_err();
+    assert_eq!(error, ThesisError::Joints { joints: 1 });
 }

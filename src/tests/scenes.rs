@@ -58,6 +58,13 @@ fn scenes_have_the_bodies_they_are_documented_with() {
         ("bullet", 1, 1),
         ("bullets", 3, 3),
         ("circles_confined", 625, 4),
+        ("chain", 30, 1),
+        ("chain/1", 1, 1),
+        ("bridge", 40, 2),
+        ("joint_grid", 398, 2),
+        ("joint_grid/1", 0, 1),
+        ("joint_grid/2", 2, 2),
+        ("pendulum", 1, 1),
     ] {
         let scene = named(name);
         assert_eq!((scene.movable(), scene.bodies.len()), (movable, movable + fixed), "{name}");

@@ -29,6 +29,7 @@ fn scene_of(bodies: Vec<BodySpec>, forces: Forces) -> Scene {
         name: "test".into(),
         about: String::new(),
         bodies,
+        joints: Vec::new(),
         forces,
         dt_secs: 1.0 / 60.0,
         steps: 1,

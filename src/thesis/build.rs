@@ -34,6 +34,12 @@ pub enum ThesisError {
         /// The field.
         feature: &'static str,
     },
+    /// No joints.
+    #[error("the thesis baseline has no joints, the scene has {joints}: remove them")]
+    Joints {
+        /// How many there are.
+        joints: usize,
+    },
     /// A shape is bad.
     #[error("body {body}: shape: {why}")]
     Shape {
@@ -111,6 +117,9 @@ pub(super) fn gravity_px(forces: &Forces) -> Result<Vec2, ThesisError> {
 
 /// All bodies of a scene, in its order.
 pub(super) fn blueprints(scene: &Scene) -> Result<Vec<Blueprint>, ThesisError> {
+    if !scene.joints.is_empty() {
+        return Err(ThesisError::Joints { joints: scene.joints.len() });
+    }
     scene.bodies.iter().enumerate().map(|(body, spec)| blueprint(body, spec)).collect()
 }
 

@@ -88,7 +88,7 @@ impl ThesisWorld {
     /// none is given.
     ///
     /// # Errors
-    /// Kinematic bodies, fields other than gravity, constant loads, collision categories; shapes and numbers
+    /// Kinematic bodies, joints, fields other than gravity, constant loads, collision categories; shapes and numbers
     /// that no engine can take.
     pub fn new(
         scene: &Scene,

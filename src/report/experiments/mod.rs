@@ -104,7 +104,7 @@ fn integrator_of(integrator: ThesisIntegrator) -> Integrator {
     }
 }
 
-/// The scene with its bodies where a simulation of it has them now.
+/// The scene with its bodies where a simulation of it has them now; anchors of joints stay where they were.
 pub fn posed(scene: &Scene, world: &dyn Simulation) -> Scene {
     let mut scene = scene.clone();
     for (spec, state) in scene.bodies.iter_mut().zip(world.states()) {

@@ -12,7 +12,16 @@ pub(crate) const DT_SECS: f64 = 1.0 / 64.0;
 
 /// A scene of these bodies, in this order.
 pub(crate) fn scene_of(bodies: Vec<BodySpec>, forces: Forces) -> Scene {
-    Scene { name: "test".into(), about: String::new(), bodies, forces, dt_secs: DT_SECS, steps: 0, seed: 0 }
+    Scene {
+        name: "test".into(),
+        about: String::new(),
+        bodies,
+        joints: Vec::new(),
+        forces,
+        dt_secs: DT_SECS,
+        steps: 0,
+        seed: 0,
+    }
 }
 
 /// A disc of 0.1 m.

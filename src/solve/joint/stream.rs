@@ -1,0 +1,321 @@
+//! Joints in batches of lanes, colour by colour: what holds constraints, and the passes over them.
+
+use std::ops::Range;
+
+use super::pin::Pin;
+use super::rod::Rod;
+use super::row::Numbers;
+use super::{Linkage, Pose, Stiffness, Swing, lanes};
+use crate::body::{Bodies, BodyId};
+use crate::joint::{Held, Joint, JointKind, Joints};
+use crate::lanes::{Lanes, Real};
+use crate::scene::BodyKind;
+use crate::solve::color::COLORS;
+use crate::solve::constraint::Side;
+use crate::solve::stream::Ends;
+
+/// In no place: padding lanes.
+const NOWHERE: u32 = u32::MAX;
+
+/// Batches of one shape.
+#[derive(Clone, Debug)]
+struct Batches<C> {
+    links: Vec<C>,
+    /// Places of joints, `WIDTH` entries per batch, as are `a` and `b`.
+    place: Vec<u32>,
+    a: Vec<u32>,
+    b: Vec<u32>,
+}
+
+impl<C> Default for Batches<C> {
+    fn default() -> Self {
+        Self { links: Vec::new(), place: Vec::new(), a: Vec::new(), b: Vec::new() }
+    }
+}
+
+impl<C> Batches<C> {
+    fn clear(&mut self) {
+        self.links.clear();
+        self.place.clear();
+        self.a.clear();
+        self.b.clear();
+    }
+
+    #[inline(always)]
+    fn each<L: Lanes>(&mut self, batches: Range<usize>, mut pass: impl FnMut(&mut C, Ends<'_>)) {
+        for at in batches {
+            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+            let (mut a, mut b) = ([0; MOST], [0; MOST]);
+            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
+            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
+            pass(&mut self.links[at], Ends { place: &self.place[lanes], a: &a, b: &b });
+        }
+    }
+
+    /// Appends joints, at most `width` per batch.
+    fn push<L: Lanes>(&mut self, places: &[u32], width: usize, sources: &Sources<'_, L::Elem>)
+    where
+        C: Linkage<L>,
+    {
+        for places in places.chunks(width) {
+            let joints = sources.joints_in(places);
+            let mut held = [Held::default(); MOST];
+            for ((held, &place), joint) in held.iter_mut().zip(places).zip(&joints) {
+                *held = sources.joints.held_at(place);
+                let [a, b] = joint.map_or([0; 2], |joint| joint.bodies.map(|id| id.slot() as u32));
+                self.place.push(place);
+                self.a.push(a);
+                self.b.push(b);
+            }
+            let padded = (self.links.len() + 1) * L::WIDTH;
+            self.place.resize(padded, NOWHERE);
+            self.a.resize(padded, 0);
+            self.b.resize(padded, 0);
+            let first = padded - L::WIDTH;
+            let inv_inertia = [&self.a, &self.b]
+                .map(|slots| lanes(&slots[first..], |&slot| sources.bodies.inv_inertia[slot as usize]));
+            self.links.push(C::new(&joints, &sources.numbers(&joints), &held, inv_inertia));
+        }
+    }
+
+    /// Another length of substeps: rows are made anew, impulses stay.
+    fn retune<L: Lanes>(&mut self, sources: &Sources<'_, L::Elem>)
+    where
+        C: Linkage<L>,
+    {
+        for (link, places) in self.links.iter_mut().zip(self.place.chunks(L::WIDTH)) {
+            link.retune(&sources.numbers(&sources.joints_in(places)));
+        }
+    }
+}
+
+/// The widest lanes: what arrays of a batch's joints are sized for.
+const MOST: usize = 16;
+
+/// What constraints are made of.
+struct Sources<'a, R: Real> {
+    joints: &'a Joints<R>,
+    bodies: &'a Bodies<R>,
+    h_secs: f64,
+    share: f64,
+}
+
+impl<R: Real> Sources<'_, R> {
+    fn joints_in(&self, places: &[u32]) -> [Option<&Joint>; MOST] {
+        std::array::from_fn(|k| places.get(k).and_then(|&place| self.joints.at(place)))
+    }
+
+    fn numbers(&self, joints: &[Option<&Joint>; MOST]) -> [Numbers; MOST] {
+        joints.map(|j| j.map_or_else(Numbers::default, |joint| Numbers::of(joint, self.h_secs, self.share)))
+    }
+}
+
+/// One colour's batches, as ranges.
+#[derive(Clone, Debug)]
+struct Span {
+    pins: Range<usize>,
+    rods: Range<usize>,
+}
+
+/// What constraints were made from: while it is the same, so are they.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct MadeFrom {
+    joints: u64,
+    bodies: u64,
+    h_secs: f64,
+    share: f64,
+}
+
+/// All joints in batches of lanes, colour by colour; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct JointStream<L: Lanes> {
+    pins: Batches<Pin<L>>,
+    rods: Batches<Rod<L>>,
+    spans: Vec<Span>,
+    made_from: MadeFrom,
+}
+
+impl<L: Lanes> Default for JointStream<L> {
+    fn default() -> Self {
+        Self {
+            pins: Batches::default(),
+            rods: Batches::default(),
+            spans: Vec::new(),
+            made_from: MadeFrom::default(),
+        }
+    }
+}
+
+/// Runs a block for each batch, colour by colour, pins first: `c` a constraint, `ends` its bodies.
+macro_rules! each {
+    ($stream:expr, |$c:ident, $ends:ident| $body:block) => {
+        for span in &$stream.spans {
+            $stream.pins.each::<L>(span.pins.clone(), |$c, $ends| $body);
+            $stream.rods.each::<L>(span.rods.clone(), |$c, $ends| $body);
+        }
+    };
+}
+
+impl<L: Lanes> JointStream<L> {
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.spans.is_empty()
+    }
+
+    /// Batches of hinges and welds, and of distance joints.
+    pub fn batches(&self) -> [usize; 2] {
+        [self.pins.links.len(), self.rods.links.len()]
+    }
+
+    /// Colours and constraints, where joints, bodies or the substep are others than those they were made from.
+    pub fn prepare(&mut self, joints: &Joints<L::Elem>, bodies: &Bodies<L::Elem>, h_secs: f64, share: f64) {
+        let from = MadeFrom { joints: joints.revision(), bodies: bodies.revision(), h_secs, share };
+        let last = std::mem::replace(&mut self.made_from, from);
+        let sources = Sources { joints, bodies, h_secs, share };
+        if last == from {
+            return;
+        }
+        if (last.joints, last.bodies) == (from.joints, from.bodies) {
+            self.pins.retune(&sources);
+            self.rods.retune(&sources);
+            return;
+        }
+        self.pins.clear();
+        self.rods.clear();
+        self.spans.clear();
+        let colors = colors(joints, bodies);
+        let of_color = |color: usize| {
+            let pick = |rod: bool| -> Vec<u32> {
+                let good = |(place, joint): &(u32, &Joint)| {
+                    colors[*place as usize] as usize == color
+                        && matches!(joint.kind, JointKind::Distance(_)) == rod
+                };
+                joints.living().filter(good).map(|(place, _)| place).collect()
+            };
+            [pick(false), pick(true)]
+        };
+        for color in 0..COLORS {
+            let [pins, rods] = of_color(color);
+            if pins.is_empty() && rods.is_empty() {
+                break;
+            }
+            self.append(&pins, &rods, L::WIDTH, &sources);
+        }
+        // More joints on a body than colours: one at a time, in order.
+        let [pins, rods] = of_color(COLORS);
+        for place in pins {
+            self.append(&[place], &[], 1, &sources);
+        }
+        for place in rods {
+            self.append(&[], &[place], 1, &sources);
+        }
+    }
+
+    fn append(&mut self, pins: &[u32], rods: &[u32], width: usize, sources: &Sources<'_, L::Elem>) {
+        let (first_pin, first_rod) = (self.pins.links.len(), self.rods.links.len());
+        self.pins.push(pins, width, sources);
+        self.rods.push(rods, width, sources);
+        self.spans
+            .push(Span { pins: first_pin..self.pins.links.len(), rods: first_rod..self.rods.links.len() });
+    }
+
+    /// A step begins: arms, gaps and angles from the poses.
+    pub fn place(&mut self, bodies: &Bodies<L::Elem>) {
+        each!(self, |c, ends| { c.place([Pose::gather(bodies, ends.a), Pose::gather(bodies, ends.b)]) });
+    }
+
+    /// Makes impulses `scale` times what they were and adds what they change velocities by, times `share`: with the
+    /// geometry of now, so that nothing is owed.
+    pub fn warm_start(&mut self, rows: &mut [[L::Elem; 4]], scale: f64, share: f64) {
+        let (scale, share) = (L::lit(scale), L::lit(share));
+        each!(self, |c, ends| {
+            *c.late() = Swing::none();
+            with_sides(rows, &ends, |a, b| c.warm_start(scale, share, a, b));
+        });
+    }
+
+    /// Before bodies move, or the only pass of a solver that has one: with bias. `moved`: displacements not yet known
+    /// to the constraints.
+    pub(in crate::solve) fn push(
+        &mut self,
+        rows: &mut [[L::Elem; 4]],
+        moved: Option<&[[L::Elem; 4]]>,
+        how: &Stiffness<L>,
+    ) {
+        each!(self, |c, ends| {
+            if let Some(moved) = moved {
+                let swing = c.follow(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
+                *c.late() = swing;
+            }
+            with_sides(rows, &ends, |a, b| {
+                let late = std::mem::replace(c.late(), Swing::none());
+                late.times(how.share).apply(c.inv_inertia(), a, b);
+                c.push(how, a, b);
+            });
+        });
+    }
+
+    /// After bodies moved by `moved`: impulses turn with their joints, velocities without bias.
+    pub(in crate::solve) fn relax(
+        &mut self,
+        rows: &mut [[L::Elem; 4]],
+        moved: &[[L::Elem; 4]],
+        how: &Stiffness<L>,
+    ) {
+        each!(self, |c, ends| {
+            let swing = c.follow(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
+            *c.late() = swing.times(how.share);
+            with_sides(rows, &ends, |a, b| {
+                swing.times(L::one() - how.share).apply(c.inv_inertia(), a, b);
+                c.relax(how, a, b);
+            });
+        });
+    }
+
+    /// Hands impulses and angles back to the joints.
+    pub fn end(&mut self, joints: &mut Joints<L::Elem>) {
+        each!(self, |c, ends| {
+            let [x, y, drive, limit, angle] = c.held().map(L::to_array);
+            for (k, &place) in ends.place.iter().enumerate() {
+                let held = Held { point: [x[k], y[k]], drive: drive[k], limit: limit[k], angle: angle[k] };
+                joints.hold_at(place, held);
+            }
+        });
+    }
+
+    /// Bytes of constraints and slots a pass streams.
+    pub fn bytes(&self) -> usize {
+        let [pins, rods] = self.batches();
+        pins * (size_of::<Pin<L>>() + 8 * L::WIDTH) + rods * (size_of::<Rod<L>>() + 8 * L::WIDTH)
+    }
+}
+
+/// Both sides' rows, gathered, changed and put back.
+#[inline(always)]
+fn with_sides<L: Lanes>(
+    rows: &mut [[L::Elem; 4]],
+    ends: &Ends<'_>,
+    change: impl FnOnce(&mut Side<L>, &mut Side<L>),
+) {
+    let (mut a, mut b) = (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
+    change(&mut a, &mut b);
+    a.scatter(rows, ends.a);
+    b.scatter(rows, ends.b);
+}
+
+/// Per place the lowest colour neither dynamic body of the joint has yet, [`COLORS`] where there is none.
+fn colors<R: Real>(joints: &Joints<R>, bodies: &Bodies<R>) -> Vec<u8> {
+    let mut used = vec![0_u64; bodies.len()];
+    let mut colors = Vec::new();
+    for (place, joint) in joints.living() {
+        let slots = joint.bodies.map(BodyId::slot).into_iter();
+        let dynamic = slots.filter(|&slot| bodies.kind(slot) == BodyKind::Dynamic);
+        let color = dynamic.clone().fold(0, |sum, slot| sum | used[slot]).trailing_ones() as usize;
+        if color < COLORS {
+            dynamic.for_each(|slot| used[slot] |= 1 << color);
+        }
+        colors.resize(place as usize + 1, COLORS as u8);
+        colors[place as usize] = color as u8;
+    }
+    colors
+}

@@ -1,0 +1,321 @@
+//! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
+
+use super::color::Coloring;
+use super::joint::{JointStream, Stiffness};
+use super::soft::{self, Softness};
+use super::stream::{Stream, WarmStart};
+use super::{Task, avbd, carries_impulses, impulse, pgs, pushes, xpbd};
+use crate::body::Bodies;
+use crate::contact::Manifolds;
+use crate::integrate::{Motion, Warm};
+use crate::joint::Joints;
+use crate::lanes::{Lanes, Real};
+use crate::narrow::Narrow;
+use crate::settings::Solver;
+
+/// Where today's gaps and impulses are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Latest {
+    /// In the pairs' rows.
+    #[default]
+    InPairs,
+    /// In the constraints.
+    InConstraints,
+    /// In the constraints, whose gaps have yet to hear of the last displacements.
+    BeforeDisplacements,
+}
+
+/// Colours, constraints and what solvers keep; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct Solving<L: Lanes> {
+    coloring: Coloring,
+    stream: Stream<L>,
+    joints: JointStream<L>,
+    bounces: soft::Bounces<L>,
+    avbd: avbd::Avbd<L>,
+    /// The graph of contacts is not the one `avbd` was cut for.
+    recut: bool,
+    /// The substep the impulses of the last step belong to, seconds.
+    last_h_secs: f64,
+    /// This substep over that one.
+    scale: f64,
+    latest: Latest,
+    /// Something may bounce in this step.
+    bouncing: bool,
+    /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
+    /// round off must not add up.
+    until_summed: u32,
+}
+
+/// Steps for which a warm start is carried from one to the next.
+const CARRIED_STEPS: u32 = 16;
+
+impl<L: Lanes> Default for Solving<L> {
+    fn default() -> Self {
+        Self {
+            coloring: Coloring::default(),
+            stream: Stream::default(),
+            joints: JointStream::default(),
+            bounces: soft::Bounces::default(),
+            avbd: avbd::Avbd::default(),
+            recut: true,
+            last_h_secs: 0.0,
+            scale: 1.0,
+            latest: Latest::default(),
+            bouncing: false,
+            until_summed: 0,
+        }
+    }
+}
+
+impl<L: Lanes> Solving<L> {
+    /// Makes constraints of the manifolds found: all of them where the graph of contacts has changed, else those of
+    /// the pairs looked at.
+    pub fn prepare(
+        &mut self,
+        bodies: &Bodies<L::Elem>,
+        narrow: &mut Narrow<L::Elem>,
+        changed: bool,
+        motion: &Motion<L::Elem>,
+    ) {
+        self.recut |= changed;
+        if changed {
+            self.coloring.run(bodies, &mut narrow.manifolds);
+            self.stream.cut(&self.coloring, &narrow.manifolds);
+        } else {
+            for place in narrow.looked_at() {
+                self.stream.touch(place);
+            }
+        }
+        self.stream.begin(&narrow.manifolds, motion.matter.fours());
+        self.until_summed = 0;
+    }
+
+    /// Forgets what constraints hold: the pairs they belong to are gone.
+    pub fn forget(&mut self) {
+        (self.latest, self.until_summed) = (Latest::InPairs, 0);
+    }
+
+    /// Hands gaps and impulses back to the pairs, before manifolds are found anew.
+    pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.latest != Latest::InPairs {
+            self.stream.end(manifolds, self.yet_to_follow(motion));
+            self.latest = Latest::InPairs;
+        }
+    }
+
+    /// Makes constraints of joints, where they, bodies or the substep have changed, and finds where they are.
+    pub fn prepare_joints(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        joints: &Joints<L::Elem>,
+    ) {
+        self.joints.prepare(joints, bodies, task.plan.h_secs, task.plan.impulse_share());
+        self.joints.place(bodies);
+    }
+
+    /// Before the first substep: what bounces is noted, and where the warm start is said.
+    pub fn begin(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) -> Warm {
+        let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
+        self.scale = if last > 0.0 { h / last } else { 1.0 };
+        let bounced = self.bouncing;
+        self.bouncing = task.traits.restitution && pushes(task.solver) && motion.swift;
+        if self.bouncing {
+            self.hand_back(manifolds, motion);
+            self.follow_pairs(task, manifolds, motion);
+            motion.load::<L>(task.plan, bodies);
+            self.bounces.resize(self.stream.batches());
+            self.stream.visit(&mut soft::NoteApproach {
+                rows: motion.velocity.fours(),
+                accelerations: motion.acceleration.fours(),
+                threshold: L::lit(task.bounce_threshold()),
+                bounces: &mut self.bounces,
+            });
+        }
+        let carries = carries_impulses(task.solver);
+        // Joints are placed anew in each step.
+        let settled = self.joints.is_empty() && !bounced && !self.bouncing && h == last;
+        if carries && settled && self.until_summed > 0 {
+            self.until_summed -= 1;
+            return Warm::Carried;
+        }
+        self.until_summed = CARRIED_STEPS;
+        motion.clear_rows();
+        if carries {
+            let rows = motion.velocity.fours_mut();
+            self.joints.warm_start(rows, self.scale, 1.0);
+            self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.scale) });
+        }
+        Warm::Summed
+    }
+
+    /// Joints, then contacts of one substep, before bodies move.
+    pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
+        let h_secs = task.plan.h_secs;
+        let rows = motion.velocity.fours_mut();
+        // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
+        let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());
+        // Joints have: they are placed at a step's beginning.
+        let joints_moved = moved.filter(|_| !first);
+        let scale = if first { self.scale } else { 1.0 };
+        let share = task.plan.impulse_share();
+        let (stream, joints) = (&mut self.stream, &mut self.joints);
+        match task.solver {
+            Solver::Soft => {
+                joints.push(rows, None, &Stiffness::soft(h_secs, share));
+                let cap = soft::PUSH_CAP * task.traits.length / task.dt_secs;
+                stream.visit(&mut soft::Push {
+                    rows,
+                    moved,
+                    soft: Softness::new(h_secs, soft::HERTZ_TIMES_SUBSTEP / h_secs, soft::DAMPING, cap),
+                    share: L::lit(share),
+                    per_share: L::lit(1.0 / share),
+                });
+            }
+            Solver::Pgs => {
+                for iteration in 0..pgs::ITERATIONS {
+                    let once = iteration == 0;
+                    joints.push(rows, joints_moved.filter(|_| once), &Stiffness::baumgarte(h_secs));
+                    pgs::iterate(stream, task, rows, moved.filter(|_| once));
+                }
+            }
+            // Bodies move before contacts are seen.
+            Solver::Xpbd | Solver::Avbd => {
+                joints.warm_start(rows, scale, share);
+                joints.push(rows, None, &Stiffness::soft(h_secs, share));
+            }
+            Solver::Impulse => {
+                // One visit leaks less than it takes back: carried from step to step, impulses of chains would grow.
+                joints.warm_start(rows, if first { 0.0 } else { 1.0 }, 1.0);
+                joints.push(rows, joints_moved, &Stiffness::baumgarte(h_secs));
+                impulse::resolve(stream, task, rows, moved);
+            }
+        }
+    }
+
+    /// Joints, then contacts of one substep, after bodies moved.
+    pub fn settle(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) {
+        let how = Stiffness::soft(task.plan.h_secs, task.plan.impulse_share());
+        let (stream, joints) = (&mut self.stream, &mut self.joints);
+        match task.solver {
+            Solver::Soft => {
+                let (rows, per_sec) = (motion.velocity.fours_mut(), L::lit(1.0 / task.plan.h_secs));
+                joints.relax(rows, motion.moved.fours(), &how);
+                if task.traits.friction {
+                    stream.visit(&mut soft::Relax::<L, true> { rows, per_sec });
+                } else {
+                    stream.visit(&mut soft::Relax::<L, false> { rows, per_sec });
+                }
+            }
+            Solver::Pgs => {}
+            Solver::Avbd => {
+                if std::mem::take(&mut self.recut) {
+                    self.avbd.cut(bodies, manifolds);
+                }
+                let pace = avbd::Pace::new(task.plan.h_secs, task.plan.impulse_share(), task.traits.length);
+                self.avbd.settle(manifolds, motion, &pace);
+                joints.relax(motion.velocity.fours_mut(), motion.moved.fours(), &how);
+            }
+            Solver::Xpbd => {
+                let (moved, rows) = (motion.moved.fours_mut(), motion.velocity.fours_mut());
+                xpbd::project(stream, task, moved, rows);
+                joints.relax(rows, moved, &how);
+                xpbd::settle(stream, task, moved, rows);
+            }
+            Solver::Impulse => stream.visit(&mut impulse::Correct {
+                moved: motion.moved.fours_mut(),
+                rows: motion.velocity.fours(),
+                slop: L::lit(impulse::SLOP * task.traits.length),
+            }),
+        }
+    }
+
+    /// After the last substep: bounces.
+    pub fn end(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) {
+        let settled = matches!(task.solver, Solver::Xpbd | Solver::Avbd);
+        if self.bouncing {
+            self.follow_pairs(task, manifolds, motion);
+            let moved = (!settled).then_some(motion.moved.fours());
+            self.stream.visit(&mut soft::Bounce {
+                rows: motion.velocity.fours_mut(),
+                touch: L::lit(task.traits.touch()),
+                moved,
+                bounces: &mut self.bounces,
+            });
+        }
+        self.latest = match task.solver {
+            Solver::Avbd => Latest::InPairs,
+            Solver::Xpbd => Latest::InConstraints,
+            Solver::Soft | Solver::Pgs | Solver::Impulse => Latest::BeforeDisplacements,
+        };
+    }
+
+    /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
+    fn follow_pairs(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+    ) {
+        if task.solver == Solver::Avbd {
+            for &place in manifolds.touching() {
+                self.stream.touch(place);
+            }
+            self.stream.begin(manifolds, motion.matter.fours());
+        }
+    }
+
+    /// The manifolds with today's gaps and impulses.
+    pub fn brought_up_to_date(
+        &self,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+    ) -> Manifolds<L::Elem> {
+        let mut manifolds = manifolds.clone();
+        if self.latest != Latest::InPairs {
+            self.stream.clone().end(&mut manifolds, self.yet_to_follow(motion));
+        }
+        manifolds
+    }
+
+    /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
+    fn yet_to_follow<'a>(&self, motion: &'a Motion<L::Elem>) -> Option<&'a [[L::Elem; 4]]> {
+        (self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours())
+    }
+
+    /// Hands impulses and angles back to the joints.
+    pub fn end_joints(&mut self, joints: &mut Joints<L::Elem>) {
+        self.joints.end(joints);
+    }
+
+    /// The joints' constraints.
+    pub fn joints(&self) -> &JointStream<L> {
+        &self.joints
+    }
+    /// The colours.
+    pub fn coloring(&self) -> &Coloring {
+        &self.coloring
+    }
+    /// The constraints.
+    pub fn stream(&self) -> &Stream<L> {
+        &self.stream
+    }
+}
