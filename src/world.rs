@@ -241,16 +241,20 @@ impl<L: Lanes> World<L> {
         let still = reuse && !self.motion.any_stirred;
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
-            self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
             if std::mem::take(&mut self.undealt) {
+                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.narrow.deal(&self.bodies, self.broad.pairs());
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
+            self.solving.hand_back_chosen(&mut self.narrow, &self.motion);
             let narrow = &self.narrow;
             self.bodies.refresh_polygons_where(|slot| narrow.wants(slot));
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
             seen.changed = self.narrow.manifolds.refresh();
+            if seen.changed {
+                self.solving.hand_back_rest(&mut self.narrow.manifolds, &self.motion);
+            }
         }
         self.times.lap(Stage::Narrow, clock);
         seen

@@ -170,7 +170,7 @@ impl<R: Real> Narrow<R> {
             self.wanted.clear();
             self.wanted.resize(bodies, false);
             for todo in &self.todo {
-                for &slot in todo.a.iter().chain(&todo.b) {
+                for &slot in todo.a[..todo.len].iter().chain(&todo.b[..todo.len]) {
                     self.wanted[slot as usize] = true;
                 }
             }
@@ -349,8 +349,9 @@ impl Todo {
     fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, stirred: Stirred<'_>) {
         let places = manifolds.bucket(bucket);
         for list in [&mut self.a, &mut self.b, &mut self.place] {
-            list.clear();
-            list.resize(places.len(), 0);
+            if list.len() < places.len() + 16 {
+                list.resize(places.len() + 16, 0);
+            }
         }
         let mut chosen = 0;
         for at in places {
@@ -363,14 +364,11 @@ impl Todo {
             (self.a[chosen], self.b[chosen], self.place[chosen]) = (a, b, at as u32);
             chosen += usize::from(look);
         }
-        for list in [&mut self.a, &mut self.b, &mut self.place] {
-            list.truncate(chosen);
-        }
-        self.len = self.a.len();
-        let padded = self.len.next_multiple_of(16);
-        self.a.resize(padded, 0);
-        self.b.resize(padded, 0);
-        self.place.resize(padded, manifolds.spill());
+        self.len = chosen;
+        let padding = chosen..chosen.next_multiple_of(16);
+        self.a[padding.clone()].fill(0);
+        self.b[padding.clone()].fill(0);
+        self.place[padding].fill(manifolds.spill());
     }
 }
 

@@ -18,7 +18,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use experiments::{broad_phase, determinism, flight, lanes, matrix, skips};
+use experiments::{broad_phase, contacts, determinism, flight, lanes, matrix, skips, stability};
 
 pub use machine::Machine;
 pub use timing::{Timing, fitted_exponent, median};
@@ -38,6 +38,10 @@ pub struct Data {
     pub determinism: Vec<determinism::Row>,
     /// Kernels at each width.
     pub lanes: Vec<lanes::Row>,
+    /// Where a step of a settled pile goes.
+    pub contacts: Vec<contacts::Row>,
+    /// Piles that are hard to hold, by every solver.
+    pub stability: Vec<stability::Row>,
     /// Each skip on and off.
     pub skips: Vec<skips::Row>,
     /// Free flight against copy bandwidth.
@@ -47,7 +51,7 @@ pub struct Data {
 impl Data {
     /// How often [`Data::measure`] calls its `tick`.
     pub fn rounds(quick: bool) -> u64 {
-        plan(quick).rounds() + 5
+        plan(quick).rounds() + 7
     }
 
     /// Runs all experiments; `tick` is told what has just been done.
@@ -62,11 +66,26 @@ impl Data {
         tick("determinism");
         let lanes = lanes::run(if quick { 8 } else { 40 })?;
         tick("lanes");
+        let contacts = contacts::run(quick, if quick { 5 } else { 20 })?;
+        tick("contacts");
+        let stability = stability::run(quick, if quick { 2.0 } else { 10.0 })?;
+        tick("stability");
         let skips = skips::run(if quick { 4 } else { 16 })?;
         tick("skips");
         let flight = flight::run(if quick { 20 } else { 100 })?;
         tick("free flight");
-        Ok(Self { machine: Machine::read(), quick, matrix, broad_phase, determinism, lanes, skips, flight })
+        Ok(Self {
+            machine: Machine::read(),
+            quick,
+            matrix,
+            broad_phase,
+            determinism,
+            lanes,
+            contacts,
+            stability,
+            skips,
+            flight,
+        })
     }
 
     /// The headline: how many times faster than the baseline with its Euler each mix runs, at 8 lanes.
@@ -105,6 +124,8 @@ impl Data {
         json!({
             "rows": self.headlines(),
             "lanes": self.lanes,
+            "contacts": self.contacts,
+            "stability": self.stability,
             "skips": self.skips,
             "flight": self.flight,
             "determinism": self.determinism,
@@ -151,6 +172,8 @@ pub fn write(data: &Data, folder: &Path) -> anyhow::Result<()> {
     write_csv(folder, "broad_phase", &data.broad_phase)?;
     write_csv(folder, "determinism", &data.determinism)?;
     write_csv(folder, "lanes", &data.lanes)?;
+    write_csv(folder, "contacts", &data.contacts)?;
+    write_csv(folder, "stability", &data.stability)?;
     write_csv(folder, "skips", &data.skips)?;
     write_csv(folder, "flight", &data.flight)?;
     let plots = plots::draw(data)?;

@@ -5,8 +5,9 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::experiments::{broad_phase, matrix};
+use super::experiments::{broad_phase, matrix, stability};
 use super::{Data, fitted_exponent};
+use crate::settings::Solver;
 
 /// One drawing.
 #[derive(Clone, Debug)]
@@ -39,7 +40,13 @@ struct Series {
 
 /// All plots of a report.
 pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
-    Ok(vec![time_against_bodies(data)?, broad_on_off(data)?, lanes_speed_up(data)?, times_faster(data)?])
+    Ok(vec![
+        time_against_bodies(data)?,
+        time_against_overlap(data)?,
+        broad_on_off(data)?,
+        lanes_speed_up(data)?,
+        times_faster(data)?,
+    ])
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -179,6 +186,32 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
             .to_owned(),
         command: "lamina bench",
         svg: log_log("Polygons, settled: time per step", "bodies", "ms per step", &series)?,
+    })
+}
+
+fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
+    const SCENE: &str = "stack/10";
+    let stands = |row: &&stability::Row| row.scene == SCENE && row.failed.is_none() && row.drift < 0.5;
+    let of = |solver: &Solver| {
+        let rows = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
+        let points: Vec<_> = rows.map(|r| (r.ms_per_step, r.max_penetration.max(1e-7) * 1e3)).collect();
+        let substeps = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
+        let substeps: Vec<_> = substeps.map(|r| r.substeps.to_string()).collect();
+        Series { name: format!("{solver}, {} substeps", substeps.join(", ")), points }
+    };
+    let series: Vec<_> = Solver::ALL.iter().map(of).filter(|s| !s.points.is_empty()).collect();
+    Ok(Plot {
+        file: "time_against_overlap.svg",
+        about:
+            "Largest overlap of a stack of ten boxes against the median time per step, by solver and substeps"
+                .to_owned(),
+        command: "lamina report",
+        svg: log_log(
+            "Ten boxes at rest: error against run time",
+            "ms per step",
+            "largest overlap mm",
+            &series,
+        )?,
     })
 }
 

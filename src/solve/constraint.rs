@@ -172,9 +172,12 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         })
     }
 
-    /// Brings the separations up to date with the displacement of both sides.
+    /// Brings the separations up to date with the displacement of both sides, unless they are.
     #[inline(always)]
     pub fn follow(&mut self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) {
+        if ends.fresh {
+            return;
+        }
         let change = self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
         for k in 0..POINTS {
             self.points[k].separation = self.points[k].separation + change[k];

@@ -25,6 +25,13 @@ enum Latest {
     BeforeDisplacements,
 }
 
+impl Latest {
+    /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
+    fn yet_to_follow<R: Real>(self, motion: &Motion<R>) -> Option<&[[R; 4]]> {
+        (self == Self::BeforeDisplacements).then_some(motion.moved.fours())
+    }
+}
+
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
@@ -83,11 +90,12 @@ impl<L: Lanes> Solving<L> {
             self.coloring.run(bodies, &mut narrow.manifolds);
             self.stream.cut(&self.coloring, &narrow.manifolds);
         } else {
-            for place in narrow.looked_at() {
-                self.stream.touch(place);
-            }
+            narrow.looked_at().for_each(|place| self.stream.touch(place));
         }
         self.stream.begin(&narrow.manifolds, motion.matter.fours());
+        if self.latest != Latest::BeforeDisplacements {
+            self.stream.age();
+        }
         self.until_summed = 0;
     }
 
@@ -96,10 +104,28 @@ impl<L: Lanes> Solving<L> {
         (self.latest, self.until_summed) = (Latest::InPairs, 0);
     }
 
+    /// Hands gaps and impulses of the pairs that will be looked at back to them, and of those whose constraints are
+    /// prepared along with them; `prepare` is to follow.
+    pub fn hand_back_chosen(&mut self, narrow: &mut Narrow<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.latest != Latest::InPairs {
+            narrow.looked_at().for_each(|place| self.stream.touch(place));
+            self.stream.end_where(true, &mut narrow.manifolds, self.latest.yet_to_follow(motion));
+        }
+    }
+
+    /// After [`Solving::hand_back_chosen`]: those of all other pairs.
+    pub fn hand_back_rest(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.latest != Latest::InPairs {
+            self.stream.end_where(false, manifolds, self.latest.yet_to_follow(motion));
+            self.latest = Latest::InPairs;
+        }
+    }
+
     /// Hands gaps and impulses back to the pairs, before manifolds are found anew.
     pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
         if self.latest != Latest::InPairs {
-            self.stream.end(manifolds, self.yet_to_follow(motion));
+            self.stream.end(manifolds, self.latest.yet_to_follow(motion));
+            self.stream.age();
             self.latest = Latest::InPairs;
         }
     }
@@ -198,6 +224,9 @@ impl<L: Lanes> Solving<L> {
                 impulse::resolve(stream, task, rows, moved);
             }
         }
+        if first {
+            self.stream.age();
+        }
     }
 
     /// Joints, then contacts of one substep, after bodies moved.
@@ -291,14 +320,9 @@ impl<L: Lanes> Solving<L> {
     ) -> Manifolds<L::Elem> {
         let mut manifolds = manifolds.clone();
         if self.latest != Latest::InPairs {
-            self.stream.clone().end(&mut manifolds, self.yet_to_follow(motion));
+            self.stream.clone().end(&mut manifolds, self.latest.yet_to_follow(motion));
         }
         manifolds
-    }
-
-    /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
-    fn yet_to_follow<'a>(&self, motion: &'a Motion<L::Elem>) -> Option<&'a [[L::Elem; 4]]> {
-        (self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours())
     }
 
     /// Hands impulses and angles back to the joints.

@@ -36,6 +36,8 @@ pub struct Ends<'a> {
     pub a: &'a [u32; 16],
     /// Slots of bodies B.
     pub b: &'a [u32; 16],
+    /// The gaps already know the displacements that others have yet to follow.
+    pub fresh: bool,
 }
 
 /// Batches of contacts solved with the same number of points.
@@ -48,11 +50,20 @@ struct Batches<L, const POINTS: usize> {
     b: Vec<u32>,
     /// Which lanes' manifolds were found anew.
     stale: Vec<u32>,
+    /// Batches prepared in this step.
+    fresh: Vec<bool>,
 }
 
 impl<L, const POINTS: usize> Default for Batches<L, POINTS> {
     fn default() -> Self {
-        Self { constraints: Vec::new(), place: Vec::new(), a: Vec::new(), b: Vec::new(), stale: Vec::new() }
+        Self {
+            constraints: Vec::new(),
+            place: Vec::new(),
+            a: Vec::new(),
+            b: Vec::new(),
+            stale: Vec::new(),
+            fresh: Vec::new(),
+        }
     }
 }
 
@@ -90,6 +101,17 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         self.constraints.resize(batches, empty);
         self.stale.clear();
         self.stale.resize(batches, ALL_LANES);
+        self.fresh.clear();
+        self.fresh.resize(batches, false);
+    }
+
+    /// Visits the batches of which lanes are stale, or those of which none is.
+    fn visit_where(&mut self, stale: bool, visitor: &mut impl Visit<L>) {
+        for at in 0..self.len() {
+            if (self.stale[at] != 0) == stale {
+                self.visit(at..at + 1, visitor);
+            }
+        }
     }
 
     #[inline(always)]
@@ -99,7 +121,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
             let (mut a, mut b) = ([0; 16], [0; 16]);
             a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
             b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            let ends = Ends { place: &self.place[lanes], a: &a, b: &b };
+            let ends = Ends { place: &self.place[lanes], a: &a, b: &b, fresh: self.fresh[at] };
             visitor.visit(&mut self.constraints[at], ends, at);
         }
     }
@@ -108,6 +130,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         for at in 0..self.len() {
             let stale = std::mem::take(&mut self.stale[at]);
             if stale != 0 {
+                self.fresh[at] = true;
                 let old = self.constraints[at];
                 let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
                 let slots = [&self.a[lanes.clone()], &self.b[lanes.clone()]];
@@ -251,16 +274,38 @@ impl<L: Lanes> Stream<L> {
         self.visit(&mut Store { manifolds, moved });
     }
 
+    /// [`Stream::end`] for the batches with a touched place, or for all others.
+    pub fn end_where(
+        &mut self,
+        touched: bool,
+        manifolds: &mut Manifolds<L::Elem>,
+        moved: Option<&[[L::Elem; 4]]>,
+    ) {
+        let store = &mut Store { manifolds, moved };
+        self.two.visit_where(touched, store);
+        self.one.visit_where(touched, store);
+    }
+
+    /// From now on displacements are news to all constraints.
+    pub fn age(&mut self) {
+        self.two.fresh.fill(false);
+        self.one.fresh.fill(false);
+    }
+
     /// Batches of two-point and of one-point contacts.
     pub fn batches(&self) -> [usize; 2] {
         [self.two.len(), self.one.len()]
     }
 
+    /// Bytes of constraint and slots a pass streams per two-point and one-point contact.
+    pub fn bytes_per_contact(&self) -> [usize; 2] {
+        [size_of::<Constraint<L, 2>>(), size_of::<Constraint<L, 1>>()].map(|bytes| bytes / L::WIDTH + 8)
+    }
+
     /// Bytes of constraints and slots a pass streams.
     pub fn bytes(&self) -> usize {
-        let slots = 8 * L::WIDTH;
-        self.two.len() * (size_of::<Constraint<L, 2>>() + slots)
-            + self.one.len() * (size_of::<Constraint<L, 1>>() + slots)
+        let [two, one] = self.bytes_per_contact();
+        (self.two.len() * two + self.one.len() * one) * L::WIDTH
     }
 }
 

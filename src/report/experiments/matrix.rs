@@ -71,7 +71,7 @@ impl Plan {
             windows: vec![
                 Windows { bodies: 150, count: 24, steps: 60 },
                 Windows { bodies: 1000, count: 6, steps: 20 },
-                Windows { bodies: 10_000, count: 4, steps: 5 },
+                Windows { bodies: 10_000, count: 4, steps: 15 },
             ],
         }
     }

@@ -48,7 +48,7 @@ impl<C> Batches<C> {
             let (mut a, mut b) = ([0; MOST], [0; MOST]);
             a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
             b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            pass(&mut self.links[at], Ends { place: &self.place[lanes], a: &a, b: &b });
+            pass(&mut self.links[at], Ends { place: &self.place[lanes], a: &a, b: &b, fresh: false });
         }
     }
 

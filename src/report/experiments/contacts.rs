@@ -1,0 +1,124 @@
+//! Where a step of a settled pile goes: shares of the stages, time per contact and pass, bytes per contact.
+
+use serde::Serialize;
+
+use super::DT_SECS;
+use crate::lanes::{Lanes, f32s};
+use crate::measure::{Stage, StageTimes};
+use crate::report::median;
+use crate::scene::by_name;
+use crate::settings::Settings;
+use crate::world::World;
+
+/// One scene at one width.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The scene.
+    pub scene: &'static str,
+    /// Numbers per vector.
+    pub lanes: usize,
+    /// Movable bodies.
+    pub bodies: usize,
+    /// Touching pairs.
+    pub contacts: usize,
+    /// Median time per step, ms.
+    pub ms_per_step: f64,
+    /// Time in the solver's passes over contacts, per contact and pass, ns: two passes per substep.
+    pub ns_per_contact_and_pass: f64,
+    /// Solver time of lanes 1 over this width's.
+    pub solve_speed_up: f64,
+    /// What a pass streams of a two-point and a one-point contact, bytes.
+    pub bytes_per_contact: [usize; 2],
+    /// Shares of the step: broad, narrow, prepare, integrate, solve, measure.
+    pub shares: [f64; 6],
+}
+
+/// Scenes with the steps that let them settle.
+const SCENES: [(&str, usize); 5] = [
+    ("pyramid/100", 120),
+    ("circles/1000", 1200),
+    ("polygons/150", 900),
+    ("polygons/1000", 1200),
+    ("polygons/10000", 900),
+];
+/// Passes of `soft` over all contacts per substep.
+const PASSES: f64 = 2.0;
+/// Steps between two readings.
+const WINDOW: usize = 10;
+
+/// Times settled scenes at 1 and 8 lanes, taking turns `windows` times; `quick` leaves the largest out.
+///
+/// # Errors
+/// A scene that cannot be run.
+pub fn run(quick: bool, windows: usize) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for (name, settle) in SCENES.into_iter().filter(|(name, _)| !(quick && name.ends_with("0000"))) {
+        let scene = by_name(name, None, 1)?;
+        let mut wide = World::<f32s::X8>::from_scene(&scene, Settings::default())?;
+        for _ in 0..settle {
+            wide.step(DT_SECS)?;
+        }
+        // The same bits at one lane: settled once, taken over, and given time to learn its impulses anew.
+        let narrow = Settings { lanes: 1, ..Settings::default() };
+        let mut narrow = World::<f32s::X1>::from_bodies(wide.bodies().clone(), *wide.forces(), narrow)?;
+        for _ in 0..SETTLE_AGAIN {
+            narrow.step(DT_SECS)?;
+            wide.step(DT_SECS)?;
+        }
+        let mut samples = [Samples::default(), Samples::default()];
+        for _ in 0..windows {
+            samples[0].window(&mut narrow)?;
+            samples[1].window(&mut wide)?;
+        }
+        let bodies = scene.movable();
+        let one = samples[0].row(name, bodies, &narrow, None);
+        let eight = samples[1].row(name, bodies, &wide, Some(&one));
+        rows.extend([one, eight]);
+    }
+    Ok(rows)
+}
+
+/// Steps after taking over a pile.
+const SETTLE_AGAIN: usize = 120;
+
+/// Stage times of windows, ns per step.
+#[derive(Default)]
+struct Samples {
+    stages: [Vec<f64>; Stage::ALL.len()],
+    total: Vec<f64>,
+}
+
+impl Samples {
+    fn window<L: Lanes>(&mut self, world: &mut World<L>) -> anyhow::Result<()> {
+        world.reset_times();
+        for _ in 0..WINDOW {
+            world.step(DT_SECS)?;
+        }
+        let times: &StageTimes = world.times();
+        let each = Stage::ALL.map(|stage| times.mean_ns(stage));
+        self.total.push(each.iter().sum());
+        for (samples, ns) in self.stages.iter_mut().zip(each) {
+            samples.push(ns);
+        }
+        Ok(())
+    }
+
+    fn row<L: Lanes>(&self, scene: &'static str, bodies: usize, world: &World<L>, one: Option<&Row>) -> Row {
+        let contacts = world.counts().contacts;
+        let stages = self.stages.each_ref().map(|s| median(s));
+        let visits = contacts as f64 * f64::from(world.settings().substeps) * PASSES;
+        let ns = stages[Stage::Solve as usize] / visits.max(1.0);
+        let whole: f64 = stages.iter().sum();
+        Row {
+            scene,
+            lanes: L::WIDTH,
+            bodies,
+            contacts,
+            ms_per_step: median(&self.total) * 1e-6,
+            ns_per_contact_and_pass: ns,
+            solve_speed_up: one.map_or(1.0, |one| one.ns_per_contact_and_pass / ns),
+            bytes_per_contact: world.solving().stream().bytes_per_contact(),
+            shares: stages.map(|ns| ns / whole),
+        }
+    }
+}

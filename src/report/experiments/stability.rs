@@ -1,0 +1,109 @@
+//! Run time against error of resting piles: scenes that are hard to hold, every solver, several substeps.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::DT_SECS;
+use crate::report::median;
+use crate::scene::by_name;
+use crate::settings::{Settings, Solver};
+use crate::simulation::{BodyState, simulate};
+
+/// One solver with one number of substeps on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The scene.
+    pub scene: &'static str,
+    /// The solver.
+    pub solver: Solver,
+    /// Substeps per step.
+    pub substeps: u32,
+    /// Simulated time, s.
+    pub seconds: f64,
+    /// Median time per step, ms.
+    pub ms_per_step: f64,
+    /// Largest overlap at the end, metres.
+    pub max_penetration: f64,
+    /// Mean overlap at the end, metres.
+    pub mean_penetration: f64,
+    /// Root mean square of the bodies' speeds at the end, m/s.
+    pub rms_speed: f64,
+    /// The farthest any body is from where it began, metres.
+    pub drift: f64,
+    /// Why it broke off, if it did.
+    pub failed: Option<String>,
+}
+
+const SCENES: [&str; 10] = [
+    "stack/10",
+    "stack/40",
+    "stack/80",
+    "columns/40",
+    "pyramid/100",
+    "heavy/100",
+    "heavy/1000",
+    "arch",
+    "cards/3",
+    "cards/4",
+];
+const CHOICES: [(Solver, u32); 7] = [
+    (Solver::Soft, 2),
+    (Solver::Soft, 4),
+    (Solver::Soft, 8),
+    (Solver::Soft, 16),
+    (Solver::Pgs, 4),
+    (Solver::Xpbd, 8),
+    (Solver::Avbd, 1),
+];
+
+/// Lets each scene stand for `seconds` with each solver.
+///
+/// # Errors
+/// A scene that cannot be built.
+pub fn run(quick: bool, seconds: f64) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for scene in SCENES {
+        if quick && matches!(scene, "pyramid/100" | "stack/80" | "columns/40") {
+            continue;
+        }
+        for (solver, substeps) in CHOICES {
+            rows.push(stand(scene, solver, substeps, seconds)?);
+        }
+    }
+    Ok(rows)
+}
+
+fn stand(name: &'static str, solver: Solver, substeps: u32, seconds: f64) -> anyhow::Result<Row> {
+    let scene = by_name(name, None, 1)?;
+    let mut world = simulate(&scene, Settings { solver, substeps, ..Settings::default() })?;
+    let begun = world.states();
+    let mut samples_ms = Vec::new();
+    let mut failed = None;
+    for _ in 0..(seconds / DT_SECS).round() as usize {
+        let start = Instant::now();
+        if let Err(error) = world.step(DT_SECS) {
+            failed = Some(error.to_string());
+            break;
+        }
+        samples_ms.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    let states = world.states();
+    let penetration = world.penetration();
+    let square = |state: &BodyState| state.velocity.iter().map(|v| v * v).sum::<f64>();
+    let moved = |(a, b): (&BodyState, &BodyState)| {
+        (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1])
+    };
+    Ok(Row {
+        scene: name,
+        solver,
+        substeps,
+        seconds,
+        ms_per_step: median(&samples_ms),
+        max_penetration: penetration.max,
+        mean_penetration: penetration.mean,
+        rms_speed: (states.iter().map(square).sum::<f64>() / states.len() as f64).sqrt(),
+        drift: begun.iter().zip(&states).map(moved).fold(0.0, f64::max),
+        failed,
+    })
+}
