@@ -24,6 +24,7 @@
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`] | the stages; they never import each other |
+//! | [`island`] | which bodies are at rest together and sleep |
 //! | [`contact`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
@@ -38,9 +39,12 @@
 //! | per substep: solve | manifolds, batches, rows | rows, impulses |
 //! | per substep: correct | rows | velocity, displacement since the step began |
 //! | finish | displacement | position, attitude |
+//! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, watched pairs |
 //! | measure | pose, velocity | finite check, counts |
 //!
-//! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]).
+//! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]). With
+//! [`settings::Settings::sleep`] a step goes over blocks and pairs that hold something awake, and where nothing is it
+//! ends after drive ([`island`]).
 //!
 //! # Invariants
 //! 1. Lane width, thread count, debug or release never change a bit of a result. Kernels use + − × ÷ √,
@@ -76,6 +80,7 @@ pub mod contact;
 pub mod drive;
 pub mod force;
 pub mod integrate;
+pub mod island;
 pub mod lanes;
 pub mod measure;
 pub mod narrow;

@@ -1,4 +1,4 @@
-//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips.
+//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips, sleep.
 
 use serde::{Deserialize, Serialize};
 
@@ -233,6 +233,8 @@ pub struct Settings {
     pub precision: Precision,
     /// Work left out where a scene does not need it.
     pub skips: Skips,
+    /// Islands of bodies at rest fall asleep; see [`crate::island`].
+    pub sleep: bool,
 }
 
 impl Default for Settings {
@@ -246,6 +248,7 @@ impl Default for Settings {
             lanes: 8,
             precision: Precision::F32,
             skips: Skips::ALL,
+            sleep: false,
         }
     }
 }

@@ -7,10 +7,11 @@ use crate::broad::BroadPhase;
 use crate::contact::{Contact, Manifolds};
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan};
+use crate::island::Islands;
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::{Narrow, Stirred};
-use crate::scene::{BodySpec, Scene, SceneError};
+use crate::scene::{BodyKind, BodySpec, Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
 use crate::solve::{self, Solving, Task, Traits};
 
@@ -71,6 +72,12 @@ pub struct World<L: Lanes> {
     motion: Motion<L::Elem>,
     /// Poses may have changed by other hands than a step's: no manifold may be reused.
     disturbed: bool,
+    /// Who sleeps; left alone without [`Settings::sleep`].
+    islands: Islands<L::Elem>,
+    /// Who is awake has changed since pairs were last sorted by it.
+    regrouped: bool,
+    /// Bodies outside the runs may have other poses than when contacts were last found.
+    unposed: bool,
     steps: u64,
     counts: Counts,
     times: StageTimes,
@@ -108,6 +115,9 @@ impl<L: Lanes> World<L> {
             solving: Solving::default(),
             motion: Motion::default(),
             disturbed: true,
+            islands: Islands::default(),
+            regrouped: false,
+            unposed: true,
             steps: 0,
             counts: Counts::default(),
             times: StageTimes::default(),
@@ -139,6 +149,9 @@ impl<L: Lanes> World<L> {
         self.inspect();
         self.bodies.drive(dt_secs);
         self.steps += 1;
+        if self.settings.sleep && self.rests() {
+            return Ok(());
+        }
         let mut clock = Instant::now();
         let mut lap = |times: &mut StageTimes, stage| times.lap(stage, &mut clock);
         let Settings { solver, substeps, skips, .. } = self.settings;
@@ -151,21 +164,26 @@ impl<L: Lanes> World<L> {
 
         if !found.kept {
             self.narrow.deal(&self.bodies, self.broad.pairs());
+            self.regrouped |= !self.islands.is_empty();
         }
+        self.regroup();
         let reuse = skips.has(Skip::ManifoldReuse) && !std::mem::take(&mut self.disturbed);
         let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
         let looked_at = self.narrow.choose(stirred);
         if looked_at > 0 {
-            self.bodies.refresh_polygons();
-            self.narrow.collide::<L>(&self.bodies, margin);
+            self.collide(margin);
         }
         let changed = self.narrow.manifolds.refresh();
+        if changed {
+            self.wake_touched();
+        }
         lap(&mut self.times, Stage::Narrow);
 
         let (fields, moving) = (&self.fields[..], solve::pushes(solver));
         let h_secs = dt_secs / f64::from(substeps);
         let plan = Plan { integrator: self.settings.integrator, fields, h_secs, substeps, skips, moving };
-        let free_flight = self.narrow.manifolds.is_empty() && skips.has(Skip::FreeFlight);
+        let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
+        let free_flight = none_touch && skips.has(Skip::FreeFlight);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         if free_flight {
             self.disturbed = true;
@@ -183,7 +201,7 @@ impl<L: Lanes> World<L> {
                 lap(&mut self.times, Stage::Integrate);
                 solving.solve(&task, motion, first);
                 lap(&mut self.times, Stage::Solve);
-                finite = integrate::advance::<L>(&plan, bodies, motion);
+                finite = integrate::advance::<L>(&plan, motion);
                 lap(&mut self.times, Stage::Integrate);
                 if !finite {
                     // The next round's prediction would hide whether the solver began it.
@@ -211,8 +229,79 @@ impl<L: Lanes> World<L> {
         );
         self.times.steps += 1;
         self.check_finite(finite)?;
+        if self.settings.sleep {
+            self.doze(dt_secs, changed);
+        }
         lap(&mut self.times, Stage::Measure);
         Ok(())
+    }
+
+    /// Polygons' world rows and manifolds, of all bodies or, while some sleep, of those that are awake.
+    fn collide(&mut self, margin: L::Elem) {
+        let everywhere = [0..self.bodies.len()];
+        let unposed = std::mem::take(&mut self.unposed);
+        if unposed || self.islands.is_empty() {
+            self.bodies.refresh_polygons();
+            self.narrow.collide::<L>(&self.bodies, margin, &everywhere);
+        } else {
+            self.motion.runs.iter().for_each(|run| self.bodies.refresh_polygons_in(run.clone()));
+            self.narrow.collide::<L>(&self.bodies, margin, &self.motion.runs);
+        }
+    }
+
+    /// Is there nothing to do, because all that can move sleeps? Else brings the runs up to date.
+    fn rests(&mut self) -> bool {
+        if self.islands.is_still(&self.bodies) {
+            self.times.steps += 1;
+            return true;
+        }
+        self.follow_islands();
+        false
+    }
+
+    /// Brings the runs up to date with who is awake.
+    fn follow_islands(&mut self) {
+        if !self.islands.take_changed() {
+            return;
+        }
+        if self.islands.is_empty() {
+            self.motion.go_over_all(&self.bodies);
+        } else {
+            self.motion.go_over_awake(&self.bodies, self.islands.awake(), self.islands.asleep());
+        }
+        (self.regrouped, self.unposed) = (true, true);
+    }
+
+    /// Sorts the pairs into those that are looked at and those that rest, where that has changed.
+    fn regroup(&mut self) {
+        if !std::mem::take(&mut self.regrouped) {
+            return;
+        }
+        if self.islands.is_empty() {
+            self.narrow.manifolds.watch_all();
+        } else {
+            self.narrow.manifolds.watch(self.islands.awake());
+        }
+    }
+
+    /// Wakes what is touched by what is awake, so that no contact of a step has a sleeping end.
+    fn wake_touched(&mut self) {
+        while !self.islands.is_empty() && self.islands.wake_touched(&self.narrow.manifolds) {
+            self.follow_islands();
+            self.regroup();
+            self.narrow.manifolds.refresh();
+        }
+    }
+
+    /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
+    fn doze(&mut self, dt_secs: f64, changed: bool) {
+        let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
+        let tired = self.islands.tire::<L>(&self.bodies, runs, dt_secs, self.traits.gravity);
+        if tired.newly || (tired.some && changed) {
+            self.islands.settle(&mut self.bodies, manifolds, runs, !self.fields.is_empty());
+        }
+        self.counts.sleeping = self.islands.sleeping();
+        self.counts.islands = self.islands.len();
     }
 
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.
@@ -239,12 +328,16 @@ impl<L: Lanes> World<L> {
             gravity: gx.hypot(gy),
         };
         self.motion.resize(&self.bodies);
+        if self.settings.sleep {
+            self.islands.look_over(&self.bodies);
+        }
         self.disturbed = true;
     }
 
     /// `rounds_finite`: no round of integrating and solving broke off.
     fn check_finite(&self, rounds_finite: bool) -> Result<(), StepError> {
-        let Some((slot, column, value)) = first_non_finite::<L>(&self.bodies) else { return Ok(()) };
+        let found = first_non_finite::<L>(&self.bodies, &self.motion.runs);
+        let Some((slot, column, value)) = found else { return Ok(()) };
         let stopped = |slot, column, value, stage| {
             Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
         };
@@ -261,37 +354,101 @@ impl<L: Lanes> World<L> {
         }
     }
 
-    /// Takes a body in.
+    /// Takes a body in. One that is not dynamic wakes all: it may have come where something sleeps.
     ///
     /// # Errors
     /// Those of [`Bodies::insert`].
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
-        self.bodies.insert(spec)
+        let id = self.bodies.insert(spec)?;
+        if spec.kind != BodyKind::Dynamic {
+            self.islands.wake_all();
+        }
+        Ok(id)
     }
 
-    /// Takes a body out.
+    /// Takes a body out. Its island wakes, and those that rest on it.
     ///
     /// # Errors
     /// An id whose body is gone.
     pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
-        self.bodies.remove(id)
+        self.bodies.remove(id)?;
+        if self.settings.sleep {
+            self.islands.wake_around(id.slot(), &self.narrow.manifolds);
+            // Only its own pairs: what others that sleep rest on has to be known until they wake.
+            self.narrow.manifolds.forget_slot(id.slot());
+            if let Some((_, removals)) = &mut self.inspected {
+                *removals += 1;
+            }
+        }
+        Ok(())
     }
 
-    /// Adds an impulse; see [`Bodies::apply_impulse`].
+    /// Adds an impulse and wakes the body's island; see [`Bodies::apply_impulse`].
     ///
     /// # Errors
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
-        self.bodies.apply_impulse(id, linear, angular)
+        self.bodies.apply_impulse(id, linear, angular)?;
+        self.islands.wake(id.slot());
+        Ok(())
+    }
+
+    /// Sets the constant force and torque on a body, and wakes its island if they are others than before; see
+    /// [`Bodies::set_force`].
+    ///
+    /// # Errors
+    /// Those of [`Bodies::set_force`].
+    pub fn set_force(&mut self, id: BodyId, force: [f64; 2], torque: f64) -> Result<(), BodyError> {
+        let before = self.bodies.check_alive(id).map(|slot| self.bodies.force_on(slot))?;
+        self.bodies.set_force(id, force, torque)?;
+        if self.bodies.force_on(id.slot()) != before {
+            self.islands.wake(id.slot());
+        }
+        Ok(())
+    }
+
+    /// Sets the fields and wakes all.
+    ///
+    /// # Errors
+    /// Fields that cannot be run with; nothing has changed then.
+    pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
+        forces.check_in::<L::Elem>()?;
+        self.forces = forces;
+        self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));
+        self.islands.wake_all();
+        Ok(())
+    }
+
+    /// Wakes the island of a body; see [`crate::island`].
+    ///
+    /// # Errors
+    /// An id whose body is gone.
+    pub fn wake(&mut self, id: BodyId) -> Result<(), BodyError> {
+        let slot = self.bodies.check_alive(id)?;
+        self.islands.wake(slot);
+        Ok(())
+    }
+    /// Does a body sleep? One that is gone does not.
+    pub fn is_asleep(&self, id: BodyId) -> bool {
+        self.bodies.check_alive(id).is_ok_and(|slot| self.islands.is_asleep(slot))
+    }
+    /// Bodies that sleep.
+    pub fn sleeping(&self) -> usize {
+        self.islands.sleeping()
+    }
+    /// Who sleeps.
+    pub fn islands(&self) -> &Islands<L::Elem> {
+        &self.islands
     }
 
     /// The columns.
     pub fn bodies(&self) -> &Bodies<L::Elem> {
         &self.bodies
     }
-    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`].
+    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`]. Wakes all.
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
         self.disturbed = true;
+        self.islands.wake_all();
         &mut self.bodies
     }
     /// The fields.
@@ -306,9 +463,9 @@ impl<L: Lanes> World<L> {
     pub fn manifolds(&self) -> &Manifolds<L::Elem> {
         &self.narrow.manifolds
     }
-    /// Those contacts, spelled out.
+    /// Those contacts, spelled out, with those of sleeping bodies.
     pub fn contacts(&self) -> Vec<Contact> {
-        (0..self.manifolds().len()).map(|k| self.manifolds().contact(k)).collect()
+        self.manifolds().contacts()
     }
     /// Colours and constraints of the last step.
     pub fn solving(&self) -> &Solving<L> {

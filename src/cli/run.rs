@@ -52,6 +52,9 @@ pub(crate) struct Args {
     /// Work to leave out where a scene does not need it: all, none, or names separated by commas.
     #[arg(long)]
     skip: Option<Skips>,
+    /// Let islands of bodies at rest fall asleep.
+    #[arg(long)]
+    sleep: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -122,6 +125,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         lanes: args.lanes.unwrap_or(default_lanes),
         precision,
         skips: args.skip.unwrap_or(asked.skips),
+        sleep: args.sleep || asked.sleep,
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -169,12 +173,15 @@ fn describe(
         "precision": settings.precision,
         "seed": scene.seed,
         "skip": settings.skips.to_string(),
+        "sleep": settings.sleep,
         "ms_per_step": timing,
         "stages_ns": stages,
         "counts": {
             "candidates": counts.candidates,
             "pairs": counts.pairs,
             "contacts": counts.contacts,
+            "sleeping": counts.sleeping,
+            "islands": counts.islands,
             "skipped": skipped,
         },
         "error": {

@@ -15,10 +15,11 @@ mod circle_polygon;
 mod clip;
 mod polygon_polygon;
 
-use crate::body::{Bodies, Form};
+use std::ops::Range;
 
+use crate::body::{Bodies, Form};
 use crate::column::{Column, PAD};
-use crate::contact::{Code, Manifolds};
+use crate::contact::{Code, Manifolds, Watched};
 use crate::lanes::{LaneMask, Lanes, ROW, Real};
 use crate::vec2::{Rot, Vec2};
 
@@ -133,7 +134,7 @@ impl<R: Real> Narrow<R> {
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.deal(bodies, pairs);
         self.choose(Stirred::All);
-        self.collide::<L>(bodies, margin);
+        self.collide::<L>(bodies, margin, &[0..bodies.len()]);
         self.manifolds.refresh();
     }
 
@@ -149,7 +150,7 @@ impl<R: Real> Narrow<R> {
         });
     }
 
-    /// Chooses the pairs last dealt that are new or have a stirred body. Returns how many.
+    /// Chooses the watched pairs that are new or have a stirred body. Returns how many.
     pub fn choose(&mut self, stirred: Stirred<'_>) -> usize {
         for (number, todo) in self.todo.iter_mut().enumerate() {
             todo.fill(&self.manifolds, number, stirred);
@@ -157,12 +158,13 @@ impl<R: Real> Narrow<R> {
         self.todo.iter().map(|todo| todo.len).sum()
     }
 
-    /// Finds the contacts of the pairs chosen; see [`Narrow::run`].
-    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R) {
+    /// Finds the contacts of the pairs chosen; see [`Narrow::run`]. Only the slots in `moved`, which begin at
+    /// multiples of [`PAD`], may have another pose than when contacts were last found.
+    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R, moved: &[Range<usize>]) {
         if self.todo.iter().all(|todo| todo.len == 0) {
             return;
         }
-        self.write_poses::<L>(bodies);
+        self.write_poses::<L>(bodies, moved);
         let margin = L::splat(margin);
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
         self.run_bucket::<L>(&cc, |a, b, _| circle_circle::collide(a, b, margin));
@@ -205,7 +207,7 @@ impl<R: Real> Narrow<R> {
         self.todo.iter().flat_map(|todo| &todo.place[..todo.len]).copied()
     }
 
-    fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+    fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, moved: &[Range<usize>]) {
         self.poses.resize(bodies.len().next_multiple_of(PAD) * ROW);
         let columns = [
             &bodies.x,
@@ -219,8 +221,10 @@ impl<R: Real> Narrow<R> {
         ]
         .map(Column::lanes::<L>);
         let rows = self.poses.rows_mut();
-        for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            L::store_rows(columns.map(|column| column[at]), &mut rows[at * L::WIDTH..]);
+        for run in moved {
+            for at in run.start / L::WIDTH..run.end.div_ceil(L::WIDTH) {
+                L::store_rows(columns.map(|column| column[at]), &mut rows[at * L::WIDTH..]);
+            }
         }
     }
 
@@ -277,16 +281,10 @@ impl Todo {
         self.a.clear();
         self.b.clear();
         self.place.clear();
-        for at in manifolds.bucket(bucket) {
-            let [a, b] = manifolds.slots(at);
-            let look = match stirred {
-                Stirred::All => true,
-                Stirred::These(bodies) => bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at),
-            };
-            if look {
-                self.a.push(a);
-                self.b.push(b);
-                self.place.push(at as u32);
+        match manifolds.watched(bucket) {
+            Watched::All(places) => places.for_each(|at| self.consider(manifolds, at, stirred)),
+            Watched::These(places) => {
+                places.iter().for_each(|&at| self.consider(manifolds, at as usize, stirred));
             }
         }
         self.len = self.a.len();
@@ -294,6 +292,22 @@ impl Todo {
         self.a.resize(padded, 0);
         self.b.resize(padded, 0);
         self.place.resize(padded, manifolds.spill());
+    }
+}
+
+impl Todo {
+    #[inline(always)]
+    fn consider<R: Real>(&mut self, manifolds: &Manifolds<R>, at: usize, stirred: Stirred<'_>) {
+        let [a, b] = manifolds.slots(at);
+        let look = match stirred {
+            Stirred::All => true,
+            Stirred::These(bodies) => bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at),
+        };
+        if look {
+            self.a.push(a);
+            self.b.push(b);
+            self.place.push(at as u32);
+        }
     }
 }
 

@@ -32,6 +32,7 @@ struct FileSettings {
     lanes: Option<usize>,
     precision: Option<Precision>,
     skip: Option<String>,
+    sleep: Option<bool>,
 }
 
 /// Reads a scene file and the settings it asks for (defaults elsewhere).
@@ -66,6 +67,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         precision,
         lanes: asked.lanes.unwrap_or(default.with_precision(precision).lanes),
         skips: skips.map_err(|e| setting(e.to_string()))?,
+        sleep: asked.sleep.unwrap_or(default.sleep),
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
     let steps = asked.steps.unwrap_or(600);
