@@ -341,7 +341,7 @@ fn check_colors(pile: &Pile) {
     let mut contacts_seen = vec![false; manifolds.pairs()];
     for color in coloring.colors() {
         let mut bodies_seen = vec![false; pile.bodies.len()];
-        for &place in coloring.order()[color.two.start..color.one.end].iter() {
+        for &place in &coloring.order()[color.two.start..color.one.end] {
             let again = std::mem::replace(&mut contacts_seen[place as usize], true);
             assert!(!again, "the contact at {place} has two colours");
             for slot in manifolds.slots(place as usize).map(|slot| slot as usize) {

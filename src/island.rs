@@ -80,7 +80,7 @@ pub struct Islands<R: Real> {
     moving_kinematic: usize,
     dynamic: usize,
     sleeping: usize,
-    islands: usize,
+    rings: usize,
     /// Kinematic bodies may have been given other velocities.
     pushed: bool,
     /// All times are 0.
@@ -102,7 +102,7 @@ impl<R: Real> Default for Islands<R> {
             moving_kinematic: 0,
             dynamic: 0,
             sleeping: 0,
-            islands: 0,
+            rings: 0,
             pushed: false,
             fresh: true,
             changed: false,
@@ -117,11 +117,11 @@ impl<R: Real> Islands<R> {
     }
     /// Islands that sleep.
     pub fn len(&self) -> usize {
-        self.islands
+        self.rings
     }
     /// Nobody sleeps?
     pub fn is_empty(&self) -> bool {
-        self.islands == 0
+        self.rings == 0
     }
     /// Per slot, whether its body sleeps.
     pub fn asleep(&self) -> &[bool] {
@@ -194,7 +194,7 @@ impl<R: Real> Islands<R> {
                 break;
             }
         }
-        self.islands -= 1;
+        self.rings -= 1;
         self.changed = true;
     }
 
@@ -226,12 +226,12 @@ impl<R: Real> Islands<R> {
 
     /// Wakes the islands that something awake touches. Did it wake any?
     pub fn wake_touched(&mut self, manifolds: &Manifolds<R>) -> bool {
-        let before = self.islands;
+        let before = self.rings;
         // A pair that touches and does not rest has an end that is awake.
         for &place in manifolds.touching() {
             self.wake_ends(manifolds.slots(place as usize));
         }
-        self.islands != before
+        self.rings != before
     }
 
     fn wake_ends(&mut self, ends: [u32; 2]) {
@@ -342,7 +342,7 @@ impl<R: Real> Islands<R> {
         // Slots ascend and a root is the lowest: it always begins its ring.
         if slot == root {
             self.next[slot] = slot as u32;
-            self.islands += 1;
+            self.rings += 1;
         } else {
             self.next[slot] = std::mem::replace(&mut self.next[root], slot as u32);
         }

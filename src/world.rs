@@ -217,16 +217,8 @@ impl<L: Lanes> World<L> {
         }
 
         let reused = self.narrow.manifolds.pairs() - looked_at;
-        self.counts = Counts::of(
-            found,
-            reused,
-            &self.narrow.manifolds,
-            free_flight,
-            skipped,
-            &self.bodies,
-            self.traits,
-            skips,
-        );
+        self.counts =
+            Counts::of(found, reused, &self.narrow.manifolds, free_flight, skipped, &self.bodies, traits);
         self.times.steps += 1;
         self.check_finite(finite)?;
         if self.settings.sleep {
@@ -238,13 +230,15 @@ impl<L: Lanes> World<L> {
 
     /// Polygons' world rows and manifolds, of all bodies or, while some sleep, of those that are awake.
     fn collide(&mut self, margin: L::Elem) {
-        let everywhere = [0..self.bodies.len()];
+        let everywhere = 0..self.bodies.len();
         let unposed = std::mem::take(&mut self.unposed);
         if unposed || self.islands.is_empty() {
             self.bodies.refresh_polygons();
-            self.narrow.collide::<L>(&self.bodies, margin, &everywhere);
+            self.narrow.collide::<L>(&self.bodies, margin, std::slice::from_ref(&everywhere));
         } else {
-            self.motion.runs.iter().for_each(|run| self.bodies.refresh_polygons_in(run.clone()));
+            for run in &self.motion.runs {
+                self.bodies.refresh_polygons_in(run.clone());
+            }
             self.narrow.collide::<L>(&self.bodies, margin, &self.motion.runs);
         }
     }

@@ -12,7 +12,7 @@ use crate::broad::BroadCounts;
 use crate::contact::Manifolds;
 use crate::integrate::Skipped;
 use crate::lanes::Real;
-use crate::settings::{Skip, Skips};
+use crate::settings::Skip;
 use crate::solve::Traits;
 
 pub use overlap::{Outline, Penetration, penetration};
@@ -108,11 +108,9 @@ impl Counts {
         free_flight: bool,
         skipped: Skipped,
         bodies: &Bodies<R>,
-        traits: Traits,
-        skips: Skips,
+        needed: Traits,
     ) -> Self {
         let contacts = manifolds.len() + manifolds.resting().len();
-        let needed = traits.needed(skips);
         let spared = |term_needed: bool| if term_needed { 0 } else { contacts as u64 };
         let mut per_skip = [0; Skip::ALL.len()];
         per_skip[Skip::ClosedForm as usize] = skipped.closed_form;

@@ -134,7 +134,7 @@ impl<R: Real> Narrow<R> {
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.deal(bodies, pairs);
         self.choose(Stirred::All);
-        self.collide::<L>(bodies, margin, &[0..bodies.len()]);
+        self.collide::<L>(bodies, margin, std::slice::from_ref(&(0..bodies.len())));
         self.manifolds.refresh();
     }
 
@@ -282,9 +282,15 @@ impl Todo {
         self.b.clear();
         self.place.clear();
         match manifolds.watched(bucket) {
-            Watched::All(places) => places.for_each(|at| self.consider(manifolds, at, stirred)),
+            Watched::All(places) => {
+                for at in places {
+                    self.consider(manifolds, at, stirred);
+                }
+            }
             Watched::These(places) => {
-                places.iter().for_each(|&at| self.consider(manifolds, at as usize, stirred));
+                for &at in places {
+                    self.consider(manifolds, at as usize, stirred);
+                }
             }
         }
         self.len = self.a.len();

@@ -190,13 +190,13 @@ impl<L: Lanes> Solving<L> {
                 let threshold = L::lit(BOUNCE_STEPS * gravity * task.dt_secs);
                 match (friction, restitution) {
                     (true, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, true> { rows, moved, threshold });
                     }
                     (true, false) => {
-                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, true, false> { rows, moved, threshold });
                     }
                     (false, true) => {
-                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold })
+                        stream.visit(&mut impulse::Resolve::<L, false, true> { rows, moved, threshold });
                     }
                     (false, false) => {
                         stream.visit(&mut impulse::Resolve::<L, false, false> { rows, moved, threshold });
