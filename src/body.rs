@@ -365,6 +365,16 @@ impl<R: Real> Bodies<R> {
         Ok(())
     }
 
+    /// The constant force (N, N) and torque (N·m) on the body in a slot.
+    pub fn force_on(&self, slot: usize) -> [R; 3] {
+        self.force.as_ref().map_or([R::ZERO; 3], |columns| columns.each_ref().map(|column| column[slot]))
+    }
+
+    /// Does some body go round a pivot?
+    pub fn is_driven(&self) -> bool {
+        !self.drives.is_empty()
+    }
+
     /// Gives the bodies with a pivot the velocities of a step of `dt_secs`; see [`crate::drive`].
     pub fn drive(&mut self, dt_secs: f64) {
         if !self.drives.is_empty() {

@@ -172,14 +172,30 @@ impl<R: Real> PairTable<R> {
     }
 }
 
+/// Which pairs of a bucket are looked at.
+#[derive(Clone, Debug)]
+pub enum Watched<'a> {
+    /// All of its places.
+    All(std::ops::Range<usize>),
+    /// These places.
+    These(&'a [u32]),
+}
+
 /// The manifolds of all candidate pairs, in the order of buckets and slots.
 #[derive(Clone, Debug)]
 pub struct Manifolds<R: Real> {
     now: PairTable<R>,
     before: PairTable<R>,
     bucket_of: Vec<u8>,
-    /// Places of the pairs that touch, ascending.
+    /// Places of the watched pairs that touch, ascending.
     touching: Vec<u32>,
+    /// Places of the other pairs that touch, ascending: their bodies sleep.
+    resting: Vec<u32>,
+    /// Places of the pairs with a body that is awake, ascending, and the ends of their buckets; not looked at
+    /// while all are.
+    watched: Vec<u32>,
+    watched_ends: [usize; 6],
+    watches_all: bool,
     /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
     changed: bool,
 }
@@ -191,6 +207,10 @@ impl<R: Real> Default for Manifolds<R> {
             before: PairTable::default(),
             bucket_of: Vec::new(),
             touching: Vec::new(),
+            resting: Vec::new(),
+            watched: Vec::new(),
+            watched_ends: [0; 6],
+            watches_all: true,
             changed: false,
         }
     }
@@ -253,7 +273,58 @@ impl<R: Real> Manifolds<R> {
             self.now.clear_place(at, R::ZERO);
         }
         self.touching.clear();
+        self.watch_all();
+    }
+
+    /// Forgets the pairs of one slot, which will mean another body or none.
+    pub fn forget_slot(&mut self, slot: usize) {
+        let slot = slot as u32;
+        for at in 0..self.pairs() {
+            if self.slots(at).contains(&slot) {
+                self.now.clear_place(at, R::from_f64(Code::UNKNOWN));
+            }
+        }
+        for list in [&mut self.touching, &mut self.resting] {
+            let (a, b) = (&self.now.a, &self.now.b);
+            list.retain(|&at| a[at as usize] != slot && b[at as usize] != slot);
+        }
         self.changed = true;
+    }
+
+    /// All pairs are looked at.
+    pub fn watch_all(&mut self) {
+        self.watches_all = true;
+        self.resting.clear();
+        self.changed = true;
+    }
+
+    /// Only pairs with a body whose slot holds `true` are looked at, until the next list of pairs: the manifolds
+    /// of the others stay as they are.
+    pub fn watch(&mut self, awake: &[bool]) {
+        self.watches_all = false;
+        self.watched.clear();
+        self.resting.clear();
+        for number in 0..6 {
+            for at in self.now.bucket(number) {
+                let [a, b] = self.slots(at);
+                if awake[a as usize] | awake[b as usize] {
+                    self.watched.push(at as u32);
+                } else if self.code(at).points() > 0 {
+                    self.resting.push(at as u32);
+                }
+            }
+            self.watched_ends[number] = self.watched.len();
+        }
+        self.changed = true;
+    }
+
+    /// The places of a bucket that are looked at.
+    pub fn watched(&self, number: usize) -> Watched<'_> {
+        if self.watches_all {
+            return Watched::All(self.bucket(number));
+        }
+        let start = if number == 0 { 0 } else { self.watched_ends[number - 1] };
+        Watched::These(&self.watched[start..self.watched_ends[number]])
     }
 
     /// Candidate pairs.
@@ -412,28 +483,46 @@ impl<R: Real> Manifolds<R> {
             let one = R::from_f64(65536.0);
             let codes = &self.now.code.as_slice()[..self.now.ends[5]];
             self.touching.clear();
-            let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
-            self.touching.extend(places.map(|(at, _)| at as u32));
+            if self.watches_all {
+                let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
+                self.touching.extend(places.map(|(at, _)| at as u32));
+            } else {
+                self.touching.extend(self.watched.iter().filter(|&&at| codes[at as usize] >= one));
+            }
         }
         changed
     }
 
-    /// Places of the pairs that touch, ascending.
+    /// Places of the pairs that touch and whose bodies all sleep or cannot move, ascending.
+    pub fn resting(&self) -> &[u32] {
+        &self.resting
+    }
+    /// Places of the pairs that touch, those of [`Manifolds::resting`] left out, ascending.
     pub fn touching(&self) -> &[u32] {
         &self.touching
     }
-    /// Pairs that touch.
+    /// Pairs that touch, the resting ones left out.
     pub fn len(&self) -> usize {
         self.touching.len()
     }
-    /// Nothing touches?
+    /// Nothing touches but what rests?
     pub fn is_empty(&self) -> bool {
         self.touching.is_empty()
     }
 
     /// The `k`-th touching pair's contact.
     pub fn contact(&self, k: usize) -> Contact {
-        let at = self.touching[k] as usize;
+        self.contact_at(self.touching[k] as usize)
+    }
+
+    /// All contacts in the order of places, the resting ones included.
+    pub fn contacts(&self) -> Vec<Contact> {
+        let mut places = [&self.touching[..], &self.resting[..]].concat();
+        places.sort_unstable();
+        places.into_iter().map(|at| self.contact_at(at as usize)).collect()
+    }
+
+    fn contact_at(&self, at: usize) -> Contact {
         let ([a, b], code) = (self.slots(at), self.code(at));
         let (row, gap, push) = (self.geometry()[at], self.gaps()[at], self.impulses()[at]);
         let value = |k: usize| row[k].to_f64();
@@ -454,7 +543,8 @@ impl<R: Real> Manifolds<R> {
             let columns = t.code.bytes() + t.geometry.bytes() + t.gap.bytes() + t.impulse.bytes();
             columns + t.a.capacity() * 8 + t.color.capacity()
         };
-        of(&self.now) + of(&self.before) + self.touching.capacity() * 4 + self.bucket_of.capacity()
+        let lists = self.touching.capacity() + self.resting.capacity() + self.watched.capacity();
+        of(&self.now) + of(&self.before) + lists * 4 + self.bucket_of.capacity()
     }
 }
 
