@@ -7,6 +7,8 @@
 //! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, colour 1. One-point and two-point
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
+mod rest;
+
 use crate::column::Column;
 use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
 
@@ -170,32 +172,50 @@ impl<R: Real> PairTable<R> {
         self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
         self.color[at] = old.color[old_at];
     }
+
+    /// The list ends here: makes room for no more than it has, and clears the places that are no pairs.
+    fn close(&mut self) {
+        let pairs = self.ends[5];
+        self.resize(pairs);
+        for at in [pairs, pairs + 1] {
+            (self.a[at], self.b[at]) = (0, 0);
+            self.clear_place(at, R::ZERO);
+        }
+    }
+
+    /// The contact at a place, spelled out.
+    fn contact(&self, at: usize) -> Contact {
+        let (a, b, code) = (self.a[at], self.b[at], Code::of(self.code[at]));
+        let (row, gap, push) = (self.geometry.rows()[at], self.gap.fours()[at], self.impulse.fours()[at]);
+        let value = |k: usize| row[k].to_f64();
+        let point = |k: usize| ContactPoint {
+            arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
+            separation: gap[gap::SEPARATION + k].to_f64(),
+            feature: code.feature(k),
+            impulse: push[impulse::NORMAL + k].to_f64(),
+        };
+        let points = (0..code.points()).map(point).collect();
+        let tangent_impulse = push[impulse::TANGENT].to_f64();
+        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
+    }
+
+    fn bytes(&self) -> usize {
+        let columns = self.code.bytes() + self.geometry.bytes() + self.gap.bytes() + self.impulse.bytes();
+        columns + self.a.capacity() * 8 + self.color.capacity()
+    }
 }
 
-/// Which pairs of a bucket are looked at.
-#[derive(Clone, Debug)]
-pub enum Watched<'a> {
-    /// All of its places.
-    All(std::ops::Range<usize>),
-    /// These places.
-    These(&'a [u32]),
-}
-
-/// The manifolds of all candidate pairs, in the order of buckets and slots.
+/// The manifolds of all candidate pairs, in the order of buckets and slots. Contacts of what sleeps rest apart:
+/// lists, lengths and places leave them out ([`Manifolds::regroup`]).
 #[derive(Clone, Debug)]
 pub struct Manifolds<R: Real> {
     now: PairTable<R>,
     before: PairTable<R>,
+    /// Contacts of what sleeps.
+    rest: rest::Rest<R>,
     bucket_of: Vec<u8>,
-    /// Places of the watched pairs that touch, ascending.
+    /// Places of the pairs that touch, ascending.
     touching: Vec<u32>,
-    /// Places of the other pairs that touch, ascending: their bodies sleep.
-    resting: Vec<u32>,
-    /// Places of the pairs with a body that is awake, ascending, and the ends of their buckets; not looked at
-    /// while all are.
-    watched: Vec<u32>,
-    watched_ends: [usize; 6],
-    watches_all: bool,
     /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
     changed: bool,
 }
@@ -205,12 +225,9 @@ impl<R: Real> Default for Manifolds<R> {
         Self {
             now: PairTable::default(),
             before: PairTable::default(),
+            rest: rest::Rest::default(),
             bucket_of: Vec::new(),
             touching: Vec::new(),
-            resting: Vec::new(),
-            watched: Vec::new(),
-            watched_ends: [0; 6],
-            watches_all: true,
             changed: false,
         }
     }
@@ -242,10 +259,7 @@ impl<R: Real> Manifolds<R> {
             *at += 1;
         }
         table.ends = next;
-        for at in [pairs.len(), pairs.len() + 1] {
-            (table.a[at], table.b[at]) = (0, 0);
-            table.clear_place(at, R::ZERO);
-        }
+        table.close();
         self.take_over();
         self.changed = true;
     }
@@ -268,63 +282,10 @@ impl<R: Real> Manifolds<R> {
     /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
     pub fn forget(&mut self) {
         self.now.ends = [0; 6];
-        self.now.resize(0);
-        for at in 0..2 {
-            self.now.clear_place(at, R::ZERO);
-        }
+        self.now.close();
+        self.rest.forget();
         self.touching.clear();
-        self.watch_all();
-    }
-
-    /// Forgets the pairs of one slot, which will mean another body or none.
-    pub fn forget_slot(&mut self, slot: usize) {
-        let slot = slot as u32;
-        for at in 0..self.pairs() {
-            if self.slots(at).contains(&slot) {
-                self.now.clear_place(at, R::from_f64(Code::UNKNOWN));
-            }
-        }
-        for list in [&mut self.touching, &mut self.resting] {
-            let (a, b) = (&self.now.a, &self.now.b);
-            list.retain(|&at| a[at as usize] != slot && b[at as usize] != slot);
-        }
         self.changed = true;
-    }
-
-    /// All pairs are looked at.
-    pub fn watch_all(&mut self) {
-        self.watches_all = true;
-        self.resting.clear();
-        self.changed = true;
-    }
-
-    /// Only pairs with a body whose slot holds `true` are looked at, until the next list of pairs: the manifolds
-    /// of the others stay as they are.
-    pub fn watch(&mut self, awake: &[bool]) {
-        self.watches_all = false;
-        self.watched.clear();
-        self.resting.clear();
-        for number in 0..6 {
-            for at in self.now.bucket(number) {
-                let [a, b] = self.slots(at);
-                if awake[a as usize] | awake[b as usize] {
-                    self.watched.push(at as u32);
-                } else if self.code(at).points() > 0 {
-                    self.resting.push(at as u32);
-                }
-            }
-            self.watched_ends[number] = self.watched.len();
-        }
-        self.changed = true;
-    }
-
-    /// The places of a bucket that are looked at.
-    pub fn watched(&self, number: usize) -> Watched<'_> {
-        if self.watches_all {
-            return Watched::All(self.bucket(number));
-        }
-        let start = if number == 0 { 0 } else { self.watched_ends[number - 1] };
-        Watched::These(&self.watched[start..self.watched_ends[number]])
     }
 
     /// Candidate pairs.
@@ -483,68 +444,34 @@ impl<R: Real> Manifolds<R> {
             let one = R::from_f64(65536.0);
             let codes = &self.now.code.as_slice()[..self.now.ends[5]];
             self.touching.clear();
-            if self.watches_all {
-                let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
-                self.touching.extend(places.map(|(at, _)| at as u32));
-            } else {
-                self.touching.extend(self.watched.iter().filter(|&&at| codes[at as usize] >= one));
-            }
+            let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
+            self.touching.extend(places.map(|(at, _)| at as u32));
         }
         changed
     }
 
-    /// Places of the pairs that touch and whose bodies all sleep or cannot move, ascending.
-    pub fn resting(&self) -> &[u32] {
-        &self.resting
-    }
-    /// Places of the pairs that touch, those of [`Manifolds::resting`] left out, ascending.
+    /// Places of the pairs that touch, ascending.
     pub fn touching(&self) -> &[u32] {
         &self.touching
     }
-    /// Pairs that touch, the resting ones left out.
+    /// Pairs that touch.
     pub fn len(&self) -> usize {
         self.touching.len()
     }
-    /// Nothing touches but what rests?
+    /// Nothing touches?
     pub fn is_empty(&self) -> bool {
         self.touching.is_empty()
     }
 
     /// The `k`-th touching pair's contact.
     pub fn contact(&self, k: usize) -> Contact {
-        self.contact_at(self.touching[k] as usize)
-    }
-
-    /// All contacts in the order of places, the resting ones included.
-    pub fn contacts(&self) -> Vec<Contact> {
-        let mut places = [&self.touching[..], &self.resting[..]].concat();
-        places.sort_unstable();
-        places.into_iter().map(|at| self.contact_at(at as usize)).collect()
-    }
-
-    fn contact_at(&self, at: usize) -> Contact {
-        let ([a, b], code) = (self.slots(at), self.code(at));
-        let (row, gap, push) = (self.geometry()[at], self.gaps()[at], self.impulses()[at]);
-        let value = |k: usize| row[k].to_f64();
-        let point = |k: usize| ContactPoint {
-            arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
-            separation: gap[gap::SEPARATION + k].to_f64(),
-            feature: code.feature(k),
-            impulse: push[impulse::NORMAL + k].to_f64(),
-        };
-        let points = (0..code.points()).map(point).collect();
-        let tangent_impulse = push[impulse::TANGENT].to_f64();
-        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
+        self.now.contact(self.touching[k] as usize)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let of = |t: &PairTable<R>| {
-            let columns = t.code.bytes() + t.geometry.bytes() + t.gap.bytes() + t.impulse.bytes();
-            columns + t.a.capacity() * 8 + t.color.capacity()
-        };
-        let lists = self.touching.capacity() + self.resting.capacity() + self.watched.capacity();
-        of(&self.now) + of(&self.before) + lists * 4 + self.bucket_of.capacity()
+        let tables = self.now.bytes() + self.before.bytes() + self.rest.bytes();
+        tables + self.touching.capacity() * 4 + self.bucket_of.capacity()
     }
 }
 

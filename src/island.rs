@@ -239,8 +239,8 @@ impl<R: Real> Islands<R> {
     /// Wakes the islands that rest on the body in a slot, or hang on it.
     pub fn wake_around(&mut self, slot: usize, manifolds: &Manifolds<R>) {
         self.wake(slot);
-        let places = manifolds.resting().iter().chain(manifolds.touching());
-        let touching = places.map(|&place| manifolds.slots(place as usize));
+        let touching = manifolds.touching().iter().map(|&place| manifolds.slots(place as usize));
+        let touching = manifolds.resting().chain(touching);
         let links = std::mem::take(&mut self.links);
         for ends in touching.chain(links.iter().copied()) {
             if ends.contains(&(slot as u32)) {

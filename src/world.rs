@@ -229,11 +229,10 @@ impl<L: Lanes> World<L> {
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
             self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+            self.regroup();
             if std::mem::take(&mut self.undealt) {
                 self.narrow.deal(&self.bodies, self.broad.pairs());
-                self.regrouped |= !self.islands.is_empty();
             }
-            self.regroup();
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
             let narrow = &self.narrow;
@@ -419,7 +418,7 @@ impl<L: Lanes> World<L> {
     pub fn hash(&self) -> u64 {
         state_hash(&self.bodies)
     }
-    /// The candidate pairs of the last step: slots a < b, in order.
+    /// The candidate pairs of the last step, of which one body at least is awake: slots a < b, in order.
     pub fn pairs(&self) -> &[[u32; 2]] {
         self.broad.pairs()
     }

@@ -13,33 +13,38 @@ pub(super) struct Reach<R: Real> {
     pub(super) together: Column<R>,
     /// For pairs with a long body: path as such.
     pub(super) alone: Column<R>,
+    /// Of a body at rest.
+    pub(super) at_rest: R,
 }
 
 impl<R: Real> Default for Reach<R> {
     fn default() -> Self {
-        Self { together: Column::new(R::ZERO), alone: Column::new(R::ZERO) }
+        Self { together: Column::new(R::ZERO), alone: Column::new(R::ZERO), at_rest: R::ZERO }
     }
 }
 
 impl<R: Real> Reach<R> {
-    /// Half of `margin`, and the larger of half of `skin` and what a body moves in `ahead_secs`.
+    /// Half of `margin`, and the larger of half of `skin` and what a body moves in `ahead_secs`; `all`: no body
+    /// sleeps. If some do, they are what paths are relative to.
     pub(super) fn measure<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
         margin: R,
         skin: R,
         ahead_secs: R,
+        all: bool,
     ) {
         self.together.resize(bodies.len());
         self.alone.resize(bodies.len());
         let half = R::from_f64(0.5);
+        self.at_rest = half * (margin + skin);
         if ahead_secs <= R::ZERO {
-            let reach = half * (margin + skin);
-            self.together.as_mut_slice().fill(reach);
-            self.alone.as_mut_slice().fill(reach);
+            self.together.as_mut_slice().fill(self.at_rest);
+            self.alone.as_mut_slice().fill(self.at_rest);
             return;
         }
-        let [mean_x, mean_y] = mean_velocity(bodies).map(L::splat);
+        let mean = if all { mean_velocity(bodies) } else { [R::ZERO; 2] };
+        let [mean_x, mean_y] = mean.map(L::splat);
         let (margin, skin, ahead) = (L::splat(half * margin), L::splat(half * skin), L::splat(ahead_secs));
         let (vx, vy) = (bodies.vx.lanes::<L>(), bodies.vy.lanes::<L>());
         for at in 0..bodies.len().div_ceil(L::WIDTH) {

@@ -109,7 +109,7 @@ impl Counts {
         bodies: &Bodies<R>,
         needed: Traits,
     ) -> Self {
-        let contacts = manifolds.len() + manifolds.resting().len();
+        let contacts = manifolds.len() + manifolds.resting_len();
         let spared = |term_needed: bool| if term_needed { 0 } else { contacts as u64 };
         let mut per_skip = [0; Skip::ALL.len()];
         per_skip[Skip::ClosedForm as usize] = skipped.closed_form;

@@ -16,8 +16,9 @@ mod clip;
 mod polygon_polygon;
 
 use crate::body::{Bodies, Form};
+
 use crate::column::{Column, PAD};
-use crate::contact::{Code, Manifolds, Watched};
+use crate::contact::{Code, Manifolds};
 use crate::lanes::{LaneMask, Lanes, ROW, Real};
 use crate::vec2::{Rot, Vec2};
 
@@ -156,7 +157,8 @@ impl<R: Real> Narrow<R> {
         });
     }
 
-    /// Chooses the watched pairs that are new or have a stirred body, of which there are `bodies`. Returns how many.
+    /// Chooses the pairs last dealt that are new or have a stirred body, of which there are `bodies`. Returns how
+    /// many.
     pub fn choose(&mut self, bodies: usize, stirred: Stirred<'_>) -> usize {
         for (number, todo) in self.todo.iter_mut().enumerate() {
             todo.fill(&self.manifolds, number, stirred);
@@ -345,21 +347,7 @@ struct Todo {
 
 impl Todo {
     fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, stirred: Stirred<'_>) {
-        match manifolds.watched(bucket) {
-            Watched::All(places) => self.choose(manifolds, places, stirred),
-            Watched::These(places) => {
-                self.choose(manifolds, places.iter().map(|&at| at as usize), stirred);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn choose<R: Real>(
-        &mut self,
-        manifolds: &Manifolds<R>,
-        places: impl ExactSizeIterator<Item = usize>,
-        stirred: Stirred<'_>,
-    ) {
+        let places = manifolds.bucket(bucket);
         for list in [&mut self.a, &mut self.b, &mut self.place] {
             list.clear();
             list.resize(places.len(), 0);

@@ -4,11 +4,13 @@
 mod common_motion;
 
 use common_motion::scene_of;
-use lamina2d::body::BodyId;
+use lamina2d::body::{Bodies, BodyId};
+use lamina2d::contact::{Contact, Manifolds};
 use lamina2d::force::{Forces, Spring};
+use lamina2d::island::Islands;
 use lamina2d::lanes::{Lanes, Real, f32s, f64s};
 use lamina2d::scene::{BodyKind, BodySpec, Scene, ShapeSpec, by_name};
-use lamina2d::settings::{Broad, Settings, Skips};
+use lamina2d::settings::{Broad, Settings, Skips, Solver};
 use lamina2d::vec2::Rot;
 use lamina2d::world::World;
 
@@ -308,7 +310,11 @@ fn what_rests_on_nothing_sleeps_only_where_nothing_pulls() {
 
 /// Two pyramids fall asleep, a ball lands on the second, a box of the first is taken away: hashes on the way.
 fn night<L: Lanes>() -> Vec<u64> {
-    let mut world = world_of::<L>(&named("pyramids/2"), drowsy());
+    night_with::<L>(drowsy())
+}
+
+fn night_with<L: Lanes>(settings: Settings) -> Vec<u64> {
+    let mut world = world_of::<L>(&named("pyramids/2"), settings);
     let mut hashes = Vec::new();
     let mut watch = |world: &mut World<L>, steps: usize| {
         for _ in 0..steps {
@@ -333,6 +339,140 @@ fn the_night_is_the_same_at_every_lane_width() {
     assert_eq!(narrow, night::<f32s::X8>());
     assert_eq!(narrow, night::<f32s::X16>());
     assert_eq!(night::<f64s::X1>(), night::<f64s::X4>());
+}
+
+#[test]
+fn no_broad_phase_moves_a_bit_of_the_night() {
+    let brute = night_with::<f32s::X8>(Settings { broad: Broad::Brute, ..drowsy() });
+    for broad in [Broad::Sweep, Broad::Grid] {
+        let other = night_with::<f32s::X8>(Settings { broad, ..drowsy() });
+        let step = brute.iter().zip(&other).position(|(a, b)| a != b);
+        assert_eq!(step, None, "{broad}: half steps until hashes or sleepers differ");
+    }
+}
+
+/// A mix falls, settles and is shot at, under any solver: hashes, sleepers and what moved though it slept.
+fn shot_at<L: Lanes>(solver: Solver) -> (Vec<u64>, usize) {
+    let mut world = world_of::<L>(&named("all/60"), Settings { solver, ..drowsy() });
+    let (mut hashes, mut most) = (Vec::new(), 0);
+    for k in 0..900 {
+        if k % 300 == 299 {
+            let bullet = BodySpec::new(ShapeSpec::Circle(0.2), [-20.0, 3.0]).moving([45.0, 0.0], 0.0);
+            world.insert(&bullet).expect("a good body");
+        }
+        let asleep: Vec<_> = world.bodies().slots().filter(|&slot| world.islands().is_asleep(slot)).collect();
+        let before: Vec<_> = asleep.iter().map(|&slot| pose(&world, slot)).collect();
+        step(&mut world, 1);
+        for (&slot, before) in asleep.iter().zip(before) {
+            let sleeps = world.islands().is_asleep(slot);
+            assert!(!sleeps || pose(&world, slot) == before, "{solver}: {slot} moved in its sleep, step {k}");
+        }
+        most = most.max(world.sleeping());
+        hashes.push(world.hash());
+    }
+    (hashes, most)
+}
+
+#[test]
+fn sleep_is_safe_under_every_solver_and_the_same_at_every_width() {
+    for &solver in Solver::ALL {
+        let (narrow, most) = shot_at::<f32s::X1>(solver);
+        println!("{solver}: {most} asleep at most");
+        assert!(most > 0 || matches!(solver, Solver::Pgs | Solver::Impulse), "{solver}: nobody sleeps");
+        assert_eq!(shot_at::<f32s::X8>(solver).0, narrow, "{solver}");
+        assert_eq!(shot_at::<f32s::X16>(solver).0, narrow, "{solver}");
+    }
+}
+
+#[test]
+fn a_bullet_wakes_the_stack_it_hits_and_a_wall_keeps_it_from_the_next() {
+    let stack = |x: f64| (0..5).map(move |k| unit_box(x, 0.5 + f64::from(k)));
+    let wall = BodySpec::new(ShapeSpec::Box([0.05, 4.0]), [4.0, 4.0]).fixed();
+    let scene = on_floor(stack(0.0).chain(stack(6.0)).chain([wall]));
+    let mut world = world_of::<f32s::X8>(&scene, drowsy());
+    put_to_sleep(&mut world, 600);
+    // Two thirds of a box a step at the first stack; through the wall in a third of a step if nothing stopped it.
+    let shots = [([-8.0, 2.4], [40.0, 0.0]), ([3.0, 6.5], [200.0, 0.0])];
+    let [_, second] = shots.map(|(place, velocity)| {
+        let shot = BodySpec::new(ShapeSpec::Circle(0.2), place).mass(0.5).moving(velocity, 0.0);
+        world.insert(&shot).expect("a good body")
+    });
+    let mut woke = None;
+    for k in 0..60 {
+        step(&mut world, 1);
+        woke = woke.or((!world.is_asleep(id(&world, 4))).then_some(k));
+        assert!(world.bodies().x[second.slot()] < 4.0, "step {k}: through the wall");
+        assert!(world.is_asleep(id(&world, 9)), "step {k}: the stack behind the wall woke");
+    }
+    let woke = woke.expect("the stack was hit");
+    assert!((9..=13).contains(&woke), "7.3 m at 2/3 m a step, not {woke} steps");
+    let pushed = world.bodies().x[4];
+    assert!(pushed > 0.05, "the box that was hit is at {pushed} m");
+}
+
+#[test]
+fn contacts_push_as_before_when_they_wake() {
+    let settled = |scene, solver| {
+        let mut world = world_of::<f32s::X8>(&named(scene), Settings { solver, ..drowsy() });
+        put_to_sleep(&mut world, 1200);
+        world
+    };
+    let load = |contacts: &[Contact]| -> Vec<f64> {
+        contacts.iter().map(|contact| contact.points.iter().map(|point| point.impulse).sum()).collect()
+    };
+    let mut world = settled("pyramid/10", Solver::Soft);
+    let before = load(&world.contacts());
+    // Not a multiple of the steps for which a warm start is carried.
+    step(&mut world, 7);
+    world.wake(id(&world, 20)).expect("lives");
+    assert_eq!(load(&world.contacts()), before, "to wake is not to push");
+    for _ in 0..20 {
+        step(&mut world, 1);
+        let after = load(&world.contacts());
+        assert_eq!(after.len(), before.len());
+        let largest = before.iter().copied().fold(0.0, f64::max);
+        let most = before.iter().zip(&after).map(|(a, b)| (a - b).abs() / largest).fold(0.0, f64::max);
+        assert!(most < 0.02, "a contact's impulse is another by {most} of the largest");
+    }
+    // A solver that carries nothing stands, too.
+    let mut world = settled("stack/5", Solver::Xpbd);
+    let top = world.bodies().y[6];
+    world.wake(id(&world, 2)).expect("lives");
+    step(&mut world, 30);
+    let moved = world.bodies().y[6] - top;
+    assert!(moved.abs() < 1e-3, "the top moved by {moved} m");
+}
+
+#[test]
+fn links_make_one_island_and_wake_both_ends_when_they_go() {
+    let mut bodies = Bodies::<f32>::new();
+    for x in [0.0, 3.0, 6.0] {
+        bodies.insert(&unit_box(x, 0.0)).expect("a good body");
+    }
+    let (mut islands, none_touch) = (Islands::default(), Manifolds::default());
+    let rest = |islands: &mut Islands<f32>, bodies: &mut Bodies<f32>| {
+        let runs = [0..bodies.len()];
+        for _ in 0..31 {
+            islands.tire::<f32s::X8>(bodies, &runs, DT_SECS, 0.0);
+        }
+        islands.settle(bodies, &none_touch, &runs, false);
+        [1, 2, 3].map(|slot| islands.is_asleep(slot))
+    };
+    islands.look_over(&bodies, [[1, 2]]);
+    bodies.vx[2] = 1.0;
+    assert_eq!(rest(&mut islands, &mut bodies), [false, false, true], "its other end moves");
+    bodies.vx[2] = 0.0;
+    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
+    assert_eq!(islands.len(), 2);
+    islands.wake(2);
+    assert_eq!([1, 2, 3].map(|slot| islands.is_asleep(slot)), [false, false, true]);
+    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
+    islands.look_over(&bodies, [[1, 2], [2, 3]]);
+    assert_eq!(islands.sleeping(), 0, "a link between two islands wakes both");
+    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
+    assert_eq!(islands.len(), 1);
+    islands.look_over(&bodies, [[2, 3]]);
+    assert_eq!(islands.sleeping(), 0, "a link that goes wakes its ends");
 }
 
 #[test]

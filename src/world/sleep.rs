@@ -44,11 +44,12 @@ impl<L: Lanes> World<L> {
             return;
         }
         self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
-        if self.islands.is_empty() {
-            self.motion.go_over_all(&self.bodies);
-        } else {
-            self.motion.go_over_awake(&self.bodies, self.islands.awake(), self.islands.asleep());
+        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        match awake {
+            None => self.motion.go_over_all(&self.bodies),
+            Some(awake) => self.motion.go_over_awake(&self.bodies, awake, self.islands.asleep()),
         }
+        self.broad.freeze(&self.bodies, awake);
         self.regrouped = true;
     }
 
@@ -57,11 +58,8 @@ impl<L: Lanes> World<L> {
         if !std::mem::take(&mut self.regrouped) {
             return;
         }
-        if self.islands.is_empty() {
-            self.narrow.manifolds.watch_all();
-        } else {
-            self.narrow.manifolds.watch(self.islands.awake());
-        }
+        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        self.narrow.manifolds.regroup(awake);
     }
 
     /// Wakes what is touched by what is awake, so that no contact of a step has a sleeping end.
@@ -73,7 +71,7 @@ impl<L: Lanes> World<L> {
             self.narrow.manifolds.refresh();
             woke = true;
         }
-        // Pairs of what woke may be new to the narrow phase: the next step looks at them.
+        // What woke has no pairs but those it touches: the next step looks for more, whether anything stirs or not.
         self.regrouped |= woke;
     }
 
