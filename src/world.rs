@@ -235,8 +235,10 @@ impl<L: Lanes> World<L> {
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
-            let narrow = &self.narrow;
-            self.bodies.refresh_polygons_where(|slot| narrow.wants(slot));
+            match self.narrow.wanted() {
+                Some(slots) => self.bodies.refresh_polygons_in(slots),
+                None => self.bodies.refresh_polygons(),
+            }
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {

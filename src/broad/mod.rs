@@ -197,7 +197,8 @@ impl<R: Real> BroadPhase<R> {
             return BroadCounts { kept: true, ..self.kept };
         }
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
-        self.reach.measure::<L>(bodies, margin, skin, ahead_secs, !some_sleep);
+        let awake = some_sleep.then_some(self.frozen.awake_slots());
+        self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
         self.find_afresh::<L>(bodies, method);
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
