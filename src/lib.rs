@@ -43,7 +43,7 @@
 //! | end, finish | rows, displacement | velocity, position, attitude, who stirred, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
 //! | measure | pose, velocity | finite check, counts |
-//! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, watched pairs |
+//! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
 //!
 //! Where nothing touches, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
 //! stirred since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
