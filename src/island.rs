@@ -12,8 +12,8 @@
 //! | all that can move sleeps | none: the step ends where it begins |
 //!
 //! Measured in f32 with 8 lanes beside one body at 50 m/s, for which pairs are found anew in every step: 5000 sleeping discs
-//! cost 0.9 ns each a step, half of it the pair list and half the sorting of contacts; the block of the one that is awake
-//! 4 µs. With all pairs in one list it was 200 ns each. All asleep: 15 ns a step.
+//! cost 0.9 ns each a step (broad phase 0.4, colours 0.4); the block of the one that is awake 4 µs. All asleep: 15 ns a
+//! step.
 //!
 //! A pair that touches never has an awake and a sleeping end: an awake body that comes to touch a sleeping one, or
 //! a kinematic body that moves, wakes the whole island in the step that finds the contact, before it is solved.
