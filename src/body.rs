@@ -64,6 +64,17 @@ struct Filter {
     dynamic: bool,
 }
 
+/// A hull's rows turned by a rotation.
+#[inline(always)]
+fn turned<R: Real>(body: &HullRows<R>, c: R, s: R) -> HullRows<R> {
+    // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
+    let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {
+        [std::array::from_fn(|k| c * x[k] - s * y[k]), std::array::from_fn(|k| s * x[k] + c * y[k])]
+    };
+    let ([x, y], [nx, ny]) = (turn(&body[0], &body[1]), turn(&body[2], &body[3]));
+    [x, y, nx, ny]
+}
+
 /// All bodies of a world.
 #[derive(Clone, Debug)]
 pub struct Bodies<R: Real> {
@@ -365,6 +376,16 @@ impl<R: Real> Bodies<R> {
         Ok(())
     }
 
+    /// The constant force (N, N) and torque (N·m) on the body in a slot.
+    pub fn force_on(&self, slot: usize) -> [R; 3] {
+        self.force.as_ref().map_or([R::ZERO; 3], |columns| columns.each_ref().map(|column| column[slot]))
+    }
+
+    /// Does some body go round a pivot?
+    pub fn is_driven(&self) -> bool {
+        !self.drives.is_empty()
+    }
+
     /// Gives the bodies with a pivot the velocities of a step of `dt_secs`; see [`crate::drive`].
     pub fn drive(&mut self, dt_secs: f64) {
         if !self.drives.is_empty() {
@@ -377,24 +398,21 @@ impl<R: Real> Bodies<R> {
 
     /// Turns the vertices and normals of all polygons into world axes.
     pub fn refresh_polygons(&mut self) {
-        self.refresh_polygons_where(|_| true);
-    }
-
-    /// Like [`Bodies::refresh_polygons`], for the bodies in slots that are `wanted`.
-    pub fn refresh_polygons_where(&mut self, wanted: impl Fn(usize) -> bool) {
         let Polygons { body, world, owner, .. } = &mut self.polygons;
         let (cs, ss) = (self.c.padded(), self.s.padded());
         for ((body, world), &owner) in body.iter().zip(world).zip(&*owner) {
-            if !wanted(owner as usize) {
-                continue;
+            *world = turned(body, cs[owner as usize], ss[owner as usize]);
+        }
+    }
+
+    /// Like [`Bodies::refresh_polygons`], for the bodies in some slots.
+    pub fn refresh_polygons_in(&mut self, slots: &[u32]) {
+        for slot in slots.iter().map(|&slot| slot as usize) {
+            if self.form[slot] == Form::Polygon {
+                for at in self.shapes(slot) {
+                    self.polygons.world[at] = turned(&self.polygons.body[at], self.c[slot], self.s[slot]);
+                }
             }
-            let (c, s) = (cs[owner as usize], ss[owner as usize]);
-            // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
-            let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {
-                [std::array::from_fn(|k| c * x[k] - s * y[k]), std::array::from_fn(|k| s * x[k] + c * y[k])]
-            };
-            let ([x, y], [nx, ny]) = (turn(&body[0], &body[1]), turn(&body[2], &body[3]));
-            *world = [x, y, nx, ny];
         }
     }
 

@@ -7,6 +7,8 @@
 //! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, colour 1. One-point and two-point
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
+mod rest;
+
 use crate::column::Column;
 use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
 
@@ -170,13 +172,47 @@ impl<R: Real> PairTable<R> {
         self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
         self.color[at] = old.color[old_at];
     }
+
+    /// The list ends here: makes room for no more than it has, and clears the places that are no pairs.
+    fn close(&mut self) {
+        let pairs = self.ends[5];
+        self.resize(pairs);
+        for at in [pairs, pairs + 1] {
+            (self.a[at], self.b[at]) = (0, 0);
+            self.clear_place(at, R::ZERO);
+        }
+    }
+
+    /// The contact at a place, spelled out.
+    fn contact(&self, at: usize) -> Contact {
+        let (a, b, code) = (self.a[at], self.b[at], Code::of(self.code[at]));
+        let (row, gap, push) = (self.geometry.rows()[at], self.gap.fours()[at], self.impulse.fours()[at]);
+        let value = |k: usize| row[k].to_f64();
+        let point = |k: usize| ContactPoint {
+            arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
+            separation: gap[gap::SEPARATION + k].to_f64(),
+            feature: code.feature(k),
+            impulse: push[impulse::NORMAL + k].to_f64(),
+        };
+        let points = (0..code.points()).map(point).collect();
+        let tangent_impulse = push[impulse::TANGENT].to_f64();
+        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
+    }
+
+    fn bytes(&self) -> usize {
+        let columns = self.code.bytes() + self.geometry.bytes() + self.gap.bytes() + self.impulse.bytes();
+        columns + self.a.capacity() * 8 + self.color.capacity()
+    }
 }
 
-/// The manifolds of all candidate pairs, in the order of buckets and slots.
+/// The manifolds of all candidate pairs, in the order of buckets and slots. Contacts of what sleeps rest apart:
+/// lists, lengths and places leave them out ([`Manifolds::regroup`]).
 #[derive(Clone, Debug)]
 pub struct Manifolds<R: Real> {
     now: PairTable<R>,
     before: PairTable<R>,
+    /// Contacts of what sleeps.
+    rest: rest::Rest<R>,
     bucket_of: Vec<u8>,
     /// Places of the pairs that touch, ascending.
     touching: Vec<u32>,
@@ -189,6 +225,7 @@ impl<R: Real> Default for Manifolds<R> {
         Self {
             now: PairTable::default(),
             before: PairTable::default(),
+            rest: rest::Rest::default(),
             bucket_of: Vec::new(),
             touching: Vec::new(),
             changed: false,
@@ -222,10 +259,7 @@ impl<R: Real> Manifolds<R> {
             *at += 1;
         }
         table.ends = next;
-        for at in [pairs.len(), pairs.len() + 1] {
-            (table.a[at], table.b[at]) = (0, 0);
-            table.clear_place(at, R::ZERO);
-        }
+        table.close();
         self.take_over();
         self.changed = true;
     }
@@ -248,10 +282,8 @@ impl<R: Real> Manifolds<R> {
     /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
     pub fn forget(&mut self) {
         self.now.ends = [0; 6];
-        self.now.resize(0);
-        for at in 0..2 {
-            self.now.clear_place(at, R::ZERO);
-        }
+        self.now.close();
+        self.rest.forget();
         self.touching.clear();
         self.changed = true;
     }
@@ -433,28 +465,13 @@ impl<R: Real> Manifolds<R> {
 
     /// The `k`-th touching pair's contact.
     pub fn contact(&self, k: usize) -> Contact {
-        let at = self.touching[k] as usize;
-        let ([a, b], code) = (self.slots(at), self.code(at));
-        let (row, gap, push) = (self.geometry()[at], self.gaps()[at], self.impulses()[at]);
-        let value = |k: usize| row[k].to_f64();
-        let point = |k: usize| ContactPoint {
-            arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
-            separation: gap[gap::SEPARATION + k].to_f64(),
-            feature: code.feature(k),
-            impulse: push[impulse::NORMAL + k].to_f64(),
-        };
-        let points = (0..code.points()).map(point).collect();
-        let tangent_impulse = push[impulse::TANGENT].to_f64();
-        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
+        self.now.contact(self.touching[k] as usize)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let of = |t: &PairTable<R>| {
-            let columns = t.code.bytes() + t.geometry.bytes() + t.gap.bytes() + t.impulse.bytes();
-            columns + t.a.capacity() * 8 + t.color.capacity()
-        };
-        of(&self.now) + of(&self.before) + self.touching.capacity() * 4 + self.bucket_of.capacity()
+        let tables = self.now.bytes() + self.before.bytes() + self.rest.bytes();
+        tables + self.touching.capacity() * 4 + self.bucket_of.capacity()
     }
 }
 

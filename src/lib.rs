@@ -24,6 +24,7 @@
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
+//! | [`island`] | which bodies are at rest together and sleep |
 //! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
 //! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
 //!
@@ -43,10 +44,12 @@
 //! | end, finish | rows, displacement | velocity, position, attitude, who stirred, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
 //! | measure | pose, velocity | finite check, counts |
+//! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
 //!
 //! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
 //! stirred since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
-//! and the warm start are still in place.
+//! and the warm start are still in place. With [`settings::Settings::sleep`] a step goes over blocks and pairs that
+//! hold something awake, and where nothing is it ends after drive ([`island`]).
 //!
 //! # Invariants
 //! 1. Lane width, thread count, debug or release never change a bit of a result. Kernels use + − × ÷ √,
@@ -101,6 +104,7 @@ pub mod continuous;
 pub mod drive;
 pub mod force;
 pub mod integrate;
+pub mod island;
 pub mod joint;
 pub mod lanes;
 pub mod measure;

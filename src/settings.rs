@@ -1,4 +1,4 @@
-//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips.
+//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips, sleep.
 
 use serde::{Deserialize, Serialize};
 
@@ -239,6 +239,8 @@ pub struct Settings {
     pub skips: Skips,
     /// Do fast bodies stop at what is in their way; see [`crate::continuous`].
     pub continuous: bool,
+    /// Islands of bodies at rest fall asleep; see [`crate::island`].
+    pub sleep: bool,
 }
 
 impl Default for Settings {
@@ -253,6 +255,7 @@ impl Default for Settings {
             precision: Precision::F32,
             skips: Skips::ALL,
             continuous: true,
+            sleep: false,
         }
     }
 }

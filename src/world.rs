@@ -1,5 +1,7 @@
 //! A world: bodies, joints, fields, and the step that advances them.
 
+mod sleep;
+
 use std::time::Instant;
 
 use crate::body::{Bodies, BodyError, BodyId};
@@ -8,11 +10,12 @@ use crate::contact::{Contact, Manifolds};
 use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan, Warm};
+use crate::island::Islands;
 use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
 use crate::narrow::{Narrow, Stirred};
-use crate::scene::{BodySpec, Scene, SceneError};
+use crate::scene::{BodyKind, BodySpec, Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
 use crate::solve::{self, Solving, Task, Traits};
 
@@ -90,6 +93,12 @@ pub struct World<L: Lanes> {
     disturbed: bool,
     /// The broad phase has a list the narrow phase has not taken yet.
     undealt: bool,
+    /// Who sleeps; left alone without [`Settings::sleep`].
+    islands: Islands<L::Elem>,
+    /// Who is awake has changed since pairs were last sorted by it.
+    regrouped: bool,
+    /// How often it has.
+    groupings: u64,
     steps: u64,
     counts: Counts,
     times: StageTimes,
@@ -145,6 +154,9 @@ impl<L: Lanes> World<L> {
             continuous: Continuous::default(),
             disturbed: true,
             undealt: true,
+            islands: Islands::default(),
+            regrouped: false,
+            groupings: 0,
             steps: 0,
             counts: Counts::default(),
             times: StageTimes::default(),
@@ -183,6 +195,9 @@ impl<L: Lanes> World<L> {
         self.inspect();
         self.bodies.drive(dt_secs);
         self.steps += 1;
+        if self.settings.sleep && self.rests() {
+            return Ok(());
+        }
         let mut clock = Instant::now();
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
         let traits = self.traits.needed(skips);
@@ -198,8 +213,8 @@ impl<L: Lanes> World<L> {
             moving: solve::pushes(solver),
             carries: solve::carries_impulses(solver),
         };
-        let loose = self.narrow.manifolds.is_empty() && self.joints.is_empty();
-        let free_flight = loose && skips.has(Skip::FreeFlight);
+        let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
+        let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
             (self.disturbed, self.motion.swift) = (true, true);
             let fast = self.continuous.begin(self.settings.continuous);
@@ -222,6 +237,9 @@ impl<L: Lanes> World<L> {
         self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, traits);
         self.times.steps += 1;
         self.check_finite(finite)?;
+        if self.settings.sleep {
+            self.doze(dt_secs, seen.changed);
+        }
         self.times.lap(Stage::Measure, &mut clock);
         Ok(())
     }
@@ -238,9 +256,13 @@ impl<L: Lanes> World<L> {
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
         // A new list can wait until something stirs: what was too far apart for a contact still is.
         self.undealt |= !found.kept;
-        let still = reuse && !self.motion.any_stirred;
+        let still = reuse && !self.motion.any_stirred && !self.regrouped;
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
+            if self.regrouped {
+                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+                self.regroup();
+            }
             if std::mem::take(&mut self.undealt) {
                 self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.narrow.deal(&self.bodies, self.broad.pairs());
@@ -248,12 +270,15 @@ impl<L: Lanes> World<L> {
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
             self.solving.hand_back_chosen(&mut self.narrow, &self.motion);
-            let narrow = &self.narrow;
-            self.bodies.refresh_polygons_where(|slot| narrow.wants(slot));
+            match self.narrow.wanted() {
+                Some(slots) => self.bodies.refresh_polygons_in(slots),
+                None => self.bodies.refresh_polygons(),
+            }
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
                 self.solving.hand_back_rest(&mut self.narrow.manifolds, &self.motion);
+                self.wake_touched();
             }
         }
         self.times.lap(Stage::Narrow, clock);
@@ -271,7 +296,8 @@ impl<L: Lanes> World<L> {
         if !seen.still {
             solving.prepare(bodies, &mut self.narrow, seen.changed, motion);
         }
-        solving.prepare_joints(task, bodies, &self.joints);
+        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
         let mut warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
@@ -281,7 +307,7 @@ impl<L: Lanes> World<L> {
             self.times.lap(Stage::Integrate, clock);
             solving.solve(task, motion, substep == 0);
             self.times.lap(Stage::Solve, clock);
-            finite = integrate::advance::<L>(task.plan, bodies, motion);
+            finite = integrate::advance::<L>(task.plan, motion);
             self.times.lap(Stage::Integrate, clock);
             if !finite {
                 // The next round's prediction would hide whether the solver began it.
@@ -306,6 +332,7 @@ impl<L: Lanes> World<L> {
         if self.inspected_joints != self.joints.revision() {
             self.inspected_joints = self.joints.revision();
             self.broad.keep_apart(self.joints.apart());
+            self.look_over_islands();
             (self.disturbed, self.motion.swift) = (true, true);
         }
         if self.inspected == Some(seen) {
@@ -332,12 +359,14 @@ impl<L: Lanes> World<L> {
         self.motion.resize(&self.bodies);
         self.motion.swift = true;
         self.continuous.look_over(&self.bodies);
+        self.look_over_islands();
         self.disturbed = true;
     }
 
     /// `rounds_finite`: no round of integrating and solving broke off.
     fn check_finite(&self, rounds_finite: bool) -> Result<(), StepError> {
-        let Some((slot, column, value)) = first_non_finite::<L>(&self.bodies) else { return Ok(()) };
+        let found = first_non_finite::<L>(&self.bodies, &self.motion.runs);
+        let Some((slot, column, value)) = found else { return Ok(()) };
         let stopped = |slot, column, value, stage| {
             Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
         };
@@ -354,20 +383,27 @@ impl<L: Lanes> World<L> {
         }
     }
 
-    /// Takes a body in.
+    /// Takes a body in. One that is not dynamic wakes all: it may have come where something sleeps.
     ///
     /// # Errors
     /// Those of [`Bodies::insert`].
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
-        self.bodies.insert(spec)
+        let id = self.bodies.insert(spec)?;
+        if spec.kind != BodyKind::Dynamic {
+            self.islands.wake_all();
+        }
+        Ok(id)
     }
 
-    /// Takes a body out, and the joints it has.
+    /// Takes a body out, and the joints it has. Its island wakes, and those that rest on it.
     ///
     /// # Errors
     /// An id whose body is gone.
     pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
         self.bodies.remove(id)?;
+        if self.settings.sleep {
+            self.wake_what_rested_on(id.slot());
+        }
         self.joints.prune(&self.bodies);
         Ok(())
     }
@@ -393,22 +429,25 @@ impl<L: Lanes> World<L> {
         self.joints.remove(id)
     }
 
-    /// Adds an impulse; see [`Bodies::apply_impulse`].
+    /// Adds an impulse and wakes the body's island; see [`Bodies::apply_impulse`].
     ///
     /// # Errors
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
         self.motion.swift = true;
-        self.bodies.apply_impulse(id, linear, angular)
+        self.bodies.apply_impulse(id, linear, angular)?;
+        self.islands.wake(id.slot());
+        Ok(())
     }
 
     /// The columns.
     pub fn bodies(&self) -> &Bodies<L::Elem> {
         &self.bodies
     }
-    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`].
+    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`]. Wakes all.
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
         (self.disturbed, self.motion.swift) = (true, true);
+        self.islands.wake_all();
         &mut self.bodies
     }
     /// The joints.
@@ -428,10 +467,9 @@ impl<L: Lanes> World<L> {
     pub fn manifolds(&self) -> &Manifolds<L::Elem> {
         &self.narrow.manifolds
     }
-    /// Those contacts, spelled out, with the gaps and impulses of the step's end.
+    /// Those contacts, spelled out, with the gaps and impulses of the step's end; those of sleeping bodies too.
     pub fn contacts(&self) -> Vec<Contact> {
-        let manifolds = self.solving.brought_up_to_date(self.manifolds(), &self.motion);
-        (0..manifolds.len()).map(|k| manifolds.contact(k)).collect()
+        self.solving.brought_up_to_date(self.manifolds(), &self.motion).contacts()
     }
     /// Colours and constraints of the last step.
     pub fn solving(&self) -> &Solving<L> {
@@ -457,7 +495,7 @@ impl<L: Lanes> World<L> {
     pub fn hash(&self) -> u64 {
         state_hash(&self.bodies)
     }
-    /// The candidate pairs of the last step: slots a < b, in order.
+    /// The candidate pairs of the last step, of which one body at least is awake: slots a < b, in order.
     pub fn pairs(&self) -> &[[u32; 2]] {
         self.broad.pairs()
     }

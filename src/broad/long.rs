@@ -40,10 +40,6 @@ impl<R> Default for LongBodies<R> {
 }
 
 impl<R: Real> LongBodies<R> {
-    pub(super) fn len(&self) -> usize {
-        self.bounds.len()
-    }
-
     pub(super) fn plain_slots(&self) -> &[u32] {
         &self.plain
     }
@@ -95,14 +91,46 @@ impl<R: Real> LongBodies<R> {
         reach: &Column<R>,
         pairs: &mut Vec<[u32; 2]>,
     ) {
+        self.find_of::<L>(bodies, reach, |_| true, pairs);
+    }
+
+    /// Like [`LongBodies::find`], for the long bodies whose slots are `wanted`: a pair of two such is found if the
+    /// lower one's is.
+    pub(super) fn find_of<L: Lanes<Elem = R>>(
+        &self,
+        bodies: &Bodies<R>,
+        reach: &Column<R>,
+        wanted: impl Fn(u32) -> bool,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
         let (xs, ys) = (bodies.x.lanes::<L>(), bodies.y.lanes::<L>());
         let radii = bodies.radius.lanes::<L>();
-        for bound in &self.bounds {
+        for bound in self.bounds.iter().filter(|bound| wanted(bound.slot)) {
             let own = Placed::<L>::new(bodies, bound, reach);
             for chunk in 0..bodies.len().div_ceil(L::WIDTH) {
                 let hits = own.meets(xs[chunk], ys[chunk], radii[chunk] + reach.lanes::<L>()[chunk]);
                 for lane in set_lanes(hits.bits()) {
                     self.accept(bodies, reach, bound, (chunk * L::WIDTH + lane) as u32, pairs);
+                }
+            }
+        }
+    }
+
+    /// What [`LongBodies::find_of`] left out of pairs with `others`: those of the long bodies that are not `wanted`.
+    pub(super) fn find_near(
+        &self,
+        bodies: &Bodies<R>,
+        reach: &Column<R>,
+        wanted: impl Fn(u32) -> bool,
+        others: &[u32],
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        for bound in self.bounds.iter().filter(|bound| !wanted(bound.slot)) {
+            let own = Placed::<R>::new(bodies, bound, reach);
+            for &other in others {
+                let k = other as usize;
+                if own.meets(bodies.x[k], bodies.y[k], bodies.radius[k] + reach[k]).any() {
+                    self.accept(bodies, reach, bound, other, pairs);
                 }
             }
         }

@@ -17,8 +17,12 @@
 //! ms, grid 13 ms. A run of cells holds about one circle, so grid gains nothing from lanes there.
 //!
 //! Long bodies never enter cells or x-order: each is tested against all others in lanes.
+//!
+//! While some bodies sleep ([`BroadPhase::freeze`]), only pairs with one that is awake are found, among these by the
+//! method for so many.
 
 mod brute;
+mod frozen;
 mod grid;
 mod keep;
 mod long;
@@ -112,6 +116,7 @@ pub struct BroadPhase<R: Real> {
     sweep: sweep::Sweep<R>,
     grid: grid::Grid<R>,
     keep: keep::Keep<R>,
+    frozen: frozen::Frozen<R>,
     kept: BroadCounts,
     revision: Option<u64>,
     /// Pairs that may not collide for other reasons than their categories, ordered like `pairs`.
@@ -129,6 +134,7 @@ impl<R: Real> Default for BroadPhase<R> {
             sweep: sweep::Sweep::default(),
             grid: grid::Grid::default(),
             keep: keep::Keep::default(),
+            frozen: frozen::Frozen::default(),
             kept: BroadCounts::default(),
             revision: None,
             apart: Vec::new(),
@@ -175,6 +181,17 @@ impl<R: Real> BroadPhase<R> {
         &self.apart
     }
 
+    /// From now on only pairs are found with a body that is `awake`, by slot; all if `None`. Until the next call what
+    /// is not awake does not move.
+    pub fn freeze(&mut self, bodies: &Bodies<R>, awake: Option<&[bool]>) {
+        self.look_over(bodies);
+        self.keep.forget();
+        match awake {
+            Some(awake) => self.frozen.sort(bodies, self.long.plain_slots(), awake),
+            None => self.frozen.active = false,
+        }
+    }
+
     /// Finds all pairs closer than `margin` metres by their bounds now or, as they move now, within `ahead_secs`;
     /// with `keep` a list may be found with a skin and serve for several steps.
     pub fn find<L: Lanes<Elem = R>>(
@@ -186,13 +203,16 @@ impl<R: Real> BroadPhase<R> {
         keep: bool,
     ) -> BroadCounts {
         self.look_over(bodies);
-        let method = Self::resolve(method, bodies.live());
+        let some_sleep = self.frozen.active;
+        let searched = if some_sleep { self.frozen.awake_slots().len() } else { bodies.live() };
+        let method = Self::resolve(method, searched);
         let keep = keep && method != Broad::Off;
         if keep && self.keep.holds::<L>(bodies, ahead_secs) {
             return BroadCounts { kept: true, ..self.kept };
         }
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
-        self.reach.measure::<L>(bodies, margin, skin, ahead_secs);
+        let awake = some_sleep.then_some(self.frozen.awake_slots());
+        self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
         self.find_afresh::<L>(bodies, method);
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
@@ -212,6 +232,9 @@ impl<R: Real> BroadPhase<R> {
             Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
             _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
         }
+        if self.frozen.active {
+            return self.find_beside_frozen::<L>(bodies);
+        }
         let plain = self.pairs.len();
         self.long.find::<L>(bodies, &self.reach.alone, &mut self.pairs);
         if method == Broad::Brute {
@@ -221,14 +244,29 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
-    /// Drops the pairs that may not collide.
+    /// The pairs of what is awake with what is not, and of long bodies.
+    fn find_beside_frozen<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+        let (frozen, reach) = (&self.frozen, &self.reach);
+        frozen.find::<L>(&self.circles, reach.at_rest, &mut self.pairs);
+        let awake = |slot| frozen.is_awake(slot);
+        self.long.find_of::<L>(bodies, &reach.alone, awake, &mut self.pairs);
+        self.long.find_near(bodies, &reach.alone, awake, frozen.awake_slots(), &mut self.pairs);
+        if 4 * self.pairs.len() < bodies.len() {
+            self.pairs.sort_unstable();
+        } else {
+            self.order.sort(&mut self.pairs, bodies.len());
+        }
+    }
+
+    /// Drops the pairs that may not collide, or of which both sleep.
     fn keep_collidable(&mut self, bodies: &Bodies<R>) {
         let mut kept = 0;
         for at in 0..self.pairs.len() {
             let pair = self.pairs[at];
             // Written always, kept when wanted: no branch to mispredict.
             self.pairs[kept] = pair;
-            kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize));
+            let stirs = !self.frozen.active || pair.iter().any(|&slot| self.frozen.is_awake(slot));
+            kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize) & stirs);
         }
         self.pairs.truncate(kept);
         if !self.apart.is_empty() {
@@ -248,11 +286,11 @@ impl<R: Real> BroadPhase<R> {
     }
 
     fn pack_plain(&mut self, bodies: &Bodies<R>) {
-        let plain = bodies.live() - self.long.len();
-        if self.circles.len() != plain {
-            self.circles.resize(plain);
+        let plain = if self.frozen.active { self.frozen.plain_slots() } else { self.long.plain_slots() };
+        if self.circles.len() != plain.len() {
+            self.circles.resize(plain.len());
         }
-        for (at, slot) in self.long.plain_slots().iter().enumerate() {
+        for (at, slot) in plain.iter().enumerate() {
             let k = *slot as usize;
             self.circles
                 .set(at, (bodies.x[k], bodies.y[k], bodies.radius[k] + self.reach.together[k], *slot));

@@ -55,6 +55,9 @@ pub(crate) struct Args {
     /// Let fast bodies go through thin walls.
     #[arg(long)]
     no_continuous: bool,
+    /// Let islands of bodies at rest fall asleep.
+    #[arg(long)]
+    sleep: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -126,6 +129,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         precision,
         skips: args.skip.unwrap_or(asked.skips),
         continuous: asked.continuous && !args.no_continuous,
+        sleep: args.sleep || asked.sleep,
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -174,12 +178,15 @@ fn describe(
         "seed": scene.seed,
         "skip": settings.skips.to_string(),
         "continuous": settings.continuous,
+        "sleep": settings.sleep,
         "ms_per_step": timing,
         "stages_ns": stages,
         "counts": {
             "candidates": counts.candidates,
             "pairs": counts.pairs,
             "contacts": counts.contacts,
+            "sleeping": counts.sleeping,
+            "islands": counts.islands,
             "skipped": skipped,
         },
         "error": {

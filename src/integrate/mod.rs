@@ -15,6 +15,8 @@
 //! | [`advance`] (per substep) | rows, free velocity, displacement | rows, displacement rows |
 //! | [`finish`] (per step) | rows, displacements | v, x, attitude, drift |
 //!
+//! All but `fly` go over the blocks of [`Motion::runs`]: the others hold nothing that moves.
+//!
 //! Drag, springs and the other fields act at the centroid: attitude follows from constant torque alone.
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
 
@@ -24,6 +26,8 @@ mod rk4;
 mod semi_implicit_euler;
 mod velocity_verlet;
 mod yoshida4;
+
+use std::ops::Range;
 
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
@@ -140,6 +144,8 @@ pub struct Motion<R: Real> {
     pub any_stirred: bool,
     /// May two bodies meet faster than the bounce threshold?
     pub swift: bool,
+    /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
+    pub runs: Vec<Range<usize>>,
 }
 
 /// Where a step's warm start is found before its first substep.
@@ -170,6 +176,7 @@ impl<R: Real> Default for Motion<R> {
             stirred: Vec::new(),
             any_stirred: true,
             swift: true,
+            runs: Vec::new(),
         }
     }
 }
@@ -188,9 +195,39 @@ impl<R: Real> Motion<R> {
             rows.resize(padded * 4);
         }
         self.stirred.resize(padded, false);
+        self.go_over_all(bodies);
+    }
+
+    /// A step goes over all bodies.
+    pub fn go_over_all(&mut self, bodies: &Bodies<R>) {
+        let len = bodies.len();
         for (slot, row) in self.matter.fours_mut()[..len].iter_mut().enumerate() {
             *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
         }
+        self.runs.clear();
+        self.runs.push(0..len);
+    }
+
+    /// A step goes over the blocks of [`PAD`] slots in which something is awake. Bodies that sleep there have no
+    /// mass, so that nothing moves them; the rows of the other blocks become those of bodies at rest.
+    pub fn go_over_awake(&mut self, bodies: &Bodies<R>, awake: &[bool], asleep: &[bool]) {
+        self.go_over_all(bodies);
+        self.runs.clear();
+        let len = bodies.len();
+        for start in (0..len).step_by(PAD) {
+            let end = (start + PAD).min(len);
+            if !awake[start..end].contains(&true) {
+                for rows in [&mut self.velocity, &mut self.moved, &mut self.acceleration] {
+                    rows.fours_mut()[start..start + PAD].fill([R::ZERO; 4]);
+                }
+            } else if let Some(last) = self.runs.last_mut().filter(|last| last.end == start) {
+                last.end = end;
+            } else {
+                self.runs.push(start..end);
+            }
+        }
+        let rows = self.matter.fours_mut()[..len].iter_mut().zip(asleep);
+        rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
     }
 
     /// All bodies begin to drift anew.
@@ -205,7 +242,7 @@ impl<R: Real> Motion<R> {
 
     /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
     pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
-        for at in block_starts::<L>(bodies.len()) {
+        for at in starts_in::<L>(&self.runs) {
             let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
             let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
             let w = block::<L>(&bodies.w, at);
@@ -222,8 +259,12 @@ impl<R: Real> Motion<R> {
 
     /// Rows of no velocity: what a warm start sums into.
     pub fn clear_rows(&mut self) {
-        for (row, matter) in self.velocity.fours_mut().iter_mut().zip(self.matter.fours()) {
-            *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
+        for run in &self.runs {
+            let slots = run.start..run.end.next_multiple_of(PAD);
+            let rows = self.velocity.fours_mut()[slots.clone()].iter_mut();
+            for (row, matter) in rows.zip(&self.matter.fours()[slots]) {
+                *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
+            }
         }
     }
 }
@@ -386,9 +427,19 @@ fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
     std::array::from_fn(|i| Vec2::new(x[i], y[i]))
 }
 
-/// First lane value of each block that holds a body.
-fn block_starts<L: Lanes>(len: usize) -> impl Iterator<Item = usize> {
-    (0..len.div_ceil(L::WIDTH)).step_by(BLOCK)
+/// The lane values of the block that starts at one.
+fn lanes_from(start: usize) -> Range<usize> {
+    start..start + BLOCK
+}
+
+/// First lane value of each block in a run of slots.
+fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
+    (run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)).step_by(BLOCK)
+}
+
+/// First lane value of each block in some runs of slots.
+fn starts_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
+    runs.iter().cloned().flat_map(block_starts::<L>)
 }
 
 #[inline(always)]
@@ -414,7 +465,7 @@ fn fly_with<L: Lanes, S: Scheme>(
     let step = Step::new(plan.h_secs);
     let may_skip_rotation = plan.skips.has(Skip::Rotation);
     let mut skipped = Skipped::default();
-    for at in block_starts::<L>(bodies.len()) {
+    for at in block_starts::<L>(0..bodies.len()) {
         let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
         let mut v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
         let matter = matter(bodies, at);
@@ -466,13 +517,17 @@ fn predict_with<L: Lanes, S: Scheme>(
     let step = Step::new(plan.h_secs);
     let per_h = L::lit(1.0 / plan.h_secs);
     let share = L::lit(plan.impulse_share());
-    for start in block_starts::<L>(bodies.len()) {
+    let runs = std::mem::take(&mut motion.runs);
+    for start in starts_in::<L>(&runs) {
+        // From the rows, where bodies that sleep have none.
+        let mut inv_mass = [L::zero(); BLOCK];
         let mut state = [[L::zero(); 3]; BLOCK];
         let mut warm = [[L::zero(); 3]; BLOCK];
         let mut total = [[L::zero(); 3]; BLOCK];
         for i in 0..BLOCK {
             let at = start + i;
-            let [px, py, pw, _] = load_four::<L>(&motion.velocity, at);
+            let [px, py, pw, held] = load_four::<L>(&motion.velocity, at);
+            inv_mass[i] = held;
             state[i] = [px, py, pw];
             if from == Warm::Summed {
                 warm[i] = state[i];
@@ -493,12 +548,13 @@ fn predict_with<L: Lanes, S: Scheme>(
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
         let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
-        let matter = matter(bodies, start);
+        let matter = Matter { inv_mass: &inv_mass, ..matter(bodies, start) };
         let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
         for i in 0..BLOCK {
             let at = start + i;
-            let (turn, spin) = S::spin(step, state[i][2], alpha.map_or(L::zero(), |a| a[i]));
+            let alpha = alpha.map_or(L::zero(), |a| L::select(inv_mass[i].le(L::zero()), L::zero(), a[i]));
+            let (turn, spin) = S::spin(step, state[i][2], alpha);
             let free = [next.velocity[i].x, next.velocity[i].y, spin];
             let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
             let mut row = [matter.inv_mass[i]; 4];
@@ -512,19 +568,17 @@ fn predict_with<L: Lanes, S: Scheme>(
             store_four::<L>(&mut motion.velocity, at, row);
         }
     }
+    motion.runs = runs;
 }
 
 /// After contacts: displacements of the substep, and the rows hold velocities again. Are all of them finite?
 #[must_use]
-pub fn advance<L: Lanes>(
-    plan: &Plan<'_, L::Elem>,
-    bodies: &Bodies<L::Elem>,
-    motion: &mut Motion<L::Elem>,
-) -> bool {
+pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>) -> bool {
     let (h, per_h) = (Step::<L>::new(plan.h_secs).h, L::lit(1.0 / plan.h_secs));
     let per_share = L::lit(1.0 / plan.impulse_share());
     let mut doubtful = L::zero();
-    for at in block_starts::<L>(bodies.len()).flat_map(|start| start..start + BLOCK) {
+    let runs = std::mem::take(&mut motion.runs);
+    for at in starts_in::<L>(&runs).flat_map(lanes_from) {
         let row = load_four::<L>(&motion.velocity, at);
         let mut velocity = row;
         let mut moved = [L::zero(); 4];
@@ -540,6 +594,7 @@ pub fn advance<L: Lanes>(
         store_four::<L>(&mut motion.velocity, at, velocity);
         store_four::<L>(&mut motion.moved, at, moved);
     }
+    motion.runs = runs;
     !(!doubtful.equals(L::zero())).any()
 }
 
@@ -558,7 +613,8 @@ pub fn finish<L: Lanes>(
 ) {
     let (bound, half_swift) = (L::lit(STIR), L::lit(0.5 * swift));
     let (mut any_stirred, mut any_swift) = (0, 0);
-    for start in block_starts::<L>(bodies.len()) {
+    let runs = std::mem::take(&mut motion.runs);
+    for start in starts_in::<L>(&runs) {
         let mut angle = [L::zero(); BLOCK];
         for i in 0..BLOCK {
             let at = start + i;
@@ -589,6 +645,7 @@ pub fn finish<L: Lanes>(
         }
         turn_block(bodies, start, &angle);
     }
+    motion.runs = runs;
     (motion.any_stirred, motion.swift) = (any_stirred != 0, any_swift != 0);
 }
 

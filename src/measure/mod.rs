@@ -90,8 +90,12 @@ pub struct Counts {
     pub candidates: usize,
     /// Pairs handed to the narrow phase.
     pub pairs: usize,
-    /// Manifolds with at least one point.
+    /// Manifolds with at least one point, those of sleeping bodies included.
     pub contacts: usize,
+    /// Bodies that sleep after the step.
+    pub sleeping: usize,
+    /// Islands they make up.
+    pub islands: usize,
     /// Per [`Skip`], how many bodies (motion) or contacts (contact terms) it spared work.
     pub skipped: [u64; Skip::ALL.len()],
 }
@@ -105,7 +109,7 @@ impl Counts {
         bodies: &Bodies<R>,
         needed: Traits,
     ) -> Self {
-        let contacts = manifolds.len();
+        let contacts = manifolds.len() + manifolds.resting_len();
         let spared = |term_needed: bool| if term_needed { 0 } else { contacts as u64 };
         let mut per_skip = [0; Skip::ALL.len()];
         per_skip[Skip::ClosedForm as usize] = skipped.closed_form;
@@ -115,6 +119,12 @@ impl Counts {
         per_skip[Skip::ManifoldReuse as usize] = skipped.manifolds;
         per_skip[Skip::Friction as usize] = spared(needed.friction);
         per_skip[Skip::Restitution as usize] = spared(needed.restitution);
-        Self { candidates: found.candidates, pairs: found.pairs, contacts, skipped: per_skip }
+        Self {
+            candidates: found.candidates,
+            pairs: found.pairs,
+            contacts,
+            skipped: per_skip,
+            ..Self::default()
+        }
     }
 }

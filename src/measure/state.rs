@@ -1,5 +1,7 @@
 //! Hash, finiteness, energy and momentum of a world's state.
 
+use std::ops::Range;
+
 use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::body::Bodies;
@@ -24,15 +26,21 @@ pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
     hasher.digest()
 }
 
-/// The first body (by column, then slot) whose state is NaN or infinite: slot, column, value.
-pub fn first_non_finite<L: Lanes>(bodies: &Bodies<L::Elem>) -> Option<(usize, &'static str, f64)> {
+/// The first body (by column, then slot) whose state is NaN or infinite: slot, column, value. Only the slots
+/// in `runs`, which begin at multiples of [`PAD`](crate::column::PAD), are suspected.
+pub fn first_non_finite<L: Lanes>(
+    bodies: &Bodies<L::Elem>,
+    runs: &[Range<usize>],
+) -> Option<(usize, &'static str, f64)> {
     let columns = state_columns(bodies);
-    let chunks = bodies.len().div_ceil(L::WIDTH);
     let mut doubtful = L::zero();
-    for (_, column) in columns {
-        for value in &column.lanes::<L>()[..chunks] {
-            // 0 where the value is finite, NaN where it is not, and NaN stays.
-            doubtful = doubtful + *value * L::zero();
+    for run in runs {
+        let chunks = run.start / L::WIDTH..run.end.div_ceil(L::WIDTH);
+        for (_, column) in columns {
+            for value in &column.lanes::<L>()[chunks.clone()] {
+                // 0 where the value is finite, NaN where it is not, and NaN stays.
+                doubtful = doubtful + *value * L::zero();
+            }
         }
     }
     if !(!doubtful.equals(L::zero())).any() {

@@ -112,7 +112,9 @@ pub struct Narrow<R: Real> {
     speeds: Column<R>,
     todo: [Todo; 6],
     /// Slots of the bodies in pairs to look at, where they are few; else all are.
-    wanted: Vec<bool>,
+    wanted: Vec<u32>,
+    /// Per slot, whether it is among them.
+    is_wanted: Vec<bool>,
     few: bool,
     /// Rows of one batch, lane by lane.
     scratch: [[R; ROW]; 16],
@@ -127,6 +129,7 @@ impl<R: Real> Default for Narrow<R> {
             speeds: Column::new(R::ZERO),
             todo: Default::default(),
             wanted: Vec::new(),
+            is_wanted: Vec::new(),
             few: false,
             scratch: [[R::ZERO; ROW]; 16],
             manifolds: Manifolds::default(),
@@ -165,23 +168,26 @@ impl<R: Real> Narrow<R> {
         }
         let chosen = self.todo.iter().map(|todo| todo.len).sum::<usize>();
         self.few = 4 * chosen < bodies;
-        self.wanted.reserve(bodies.saturating_sub(self.wanted.len()));
+        for slot in self.wanted.drain(..) {
+            self.is_wanted[slot as usize] = false;
+        }
+        self.wanted.reserve(bodies);
+        self.is_wanted.resize(bodies, false);
         if self.few {
-            self.wanted.clear();
-            self.wanted.resize(bodies, false);
             for todo in &self.todo {
                 for &slot in todo.a[..todo.len].iter().chain(&todo.b[..todo.len]) {
-                    self.wanted[slot as usize] = true;
+                    if !std::mem::replace(&mut self.is_wanted[slot as usize], true) {
+                        self.wanted.push(slot);
+                    }
                 }
             }
         }
         chosen
     }
 
-    /// Is the body in a slot part of a pair that will be looked at?
-    #[inline(always)]
-    pub fn wants(&self, slot: usize) -> bool {
-        !self.few || self.wanted[slot]
+    /// Slots of the bodies in pairs that will be looked at, where they are few; else all may be.
+    pub fn wanted(&self) -> Option<&[u32]> {
+        self.few.then_some(&self.wanted)
     }
 
     /// Finds the contacts of the pairs chosen; see [`Narrow::run`]. The margin of a pair is wider by what its
@@ -256,7 +262,7 @@ impl<R: Real> Narrow<R> {
         let rows = self.poses.rows_mut();
         if self.few {
             let columns = columns.map(bytemuck::cast_slice::<L, R>);
-            for slot in (0..bodies.len()).filter(|&slot| self.wanted[slot]) {
+            for slot in self.wanted.iter().map(|&slot| slot as usize) {
                 rows[slot] = columns.map(|column| column[slot]);
             }
             return;
@@ -267,7 +273,15 @@ impl<R: Real> Narrow<R> {
     }
 
     fn write_speeds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
-        let columns = [&bodies.vx, &bodies.vy, &bodies.radius].map(Column::lanes::<L>);
+        let columns = [&bodies.vx, &bodies.vy, &bodies.radius];
+        if self.few {
+            for slot in self.wanted.iter().map(|&slot| slot as usize) {
+                let [vx, vy, radius] = columns.map(|column| column[slot]);
+                self.speeds.fours_mut()[slot] = [vx, vy, radius, R::ZERO];
+            }
+            return;
+        }
+        let columns = columns.map(Column::lanes::<L>);
         let index: [u32; 16] = std::array::from_fn(|lane| lane as u32);
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
             let [vx, vy, radius] = columns.map(|column| column[at]);

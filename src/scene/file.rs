@@ -36,6 +36,7 @@ struct FileSettings {
     precision: Option<Precision>,
     skip: Option<String>,
     continuous: Option<bool>,
+    sleep: Option<bool>,
 }
 
 /// Reads a scene file and the settings it asks for (defaults elsewhere).
@@ -71,6 +72,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         lanes: asked.lanes.unwrap_or(default.with_precision(precision).lanes),
         skips: skips.map_err(|e| setting(e.to_string()))?,
         continuous: asked.continuous.unwrap_or(default.continuous),
+        sleep: asked.sleep.unwrap_or(default.sleep),
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
     let steps = asked.steps.unwrap_or(600);

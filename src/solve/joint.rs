@@ -53,7 +53,7 @@ use crate::lanes::{Lanes, Real};
 use crate::vec2::{Rot, Vec2, sin_cos};
 use row::Numbers;
 
-pub use stream::JointStream;
+pub use stream::{JointStream, Sources};
 
 /// Stiffness of rigid joints: hz·h, below what chains of any length bear.
 pub const HERTZ_TIMES_SUBSTEP: f64 = 0.22;

@@ -1,7 +1,7 @@
 //! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
 
 use super::color::Coloring;
-use super::joint::{JointStream, Stiffness};
+use super::joint::{JointStream, Sources, Stiffness};
 use super::soft::{self, Softness};
 use super::stream::{Stream, WarmStart};
 use super::{Task, avbd, carries_impulses, impulse, pgs, pushes, xpbd};
@@ -130,14 +130,17 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// Makes constraints of joints, where they, bodies or the substep have changed, and finds where they are.
+    /// Makes constraints of joints, where they, bodies, the substep or who is `awake` have changed, and finds where
+    /// they are. `awake`: bodies by slot, all if `None`, and how often that has changed.
     pub fn prepare_joints(
         &mut self,
         task: &Task<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
         joints: &Joints<L::Elem>,
+        awake: (Option<&[bool]>, u64),
     ) {
-        self.joints.prepare(joints, bodies, task.plan.h_secs, task.plan.impulse_share());
+        let [h_secs, share] = [task.plan.h_secs, task.plan.impulse_share()];
+        self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0 }, awake.1);
         self.joints.place(bodies);
     }
 

@@ -28,6 +28,7 @@ broad = "sweep"
 lanes = 4
 precision = "f64"
 skip = "closed_form,friction"
+sleep = true
 
 [forces]
 gravity = [0, -9.81]
@@ -115,7 +116,7 @@ fn check_run(result: &Value) {
     for (group, fields) in [
         ("ms_per_step", vec!["min", "median", "mean", "p99"]),
         ("stages_ns", Stage::ALL.iter().map(|s| s.name()).collect()),
-        ("counts", vec!["candidates", "pairs", "contacts"]),
+        ("counts", vec!["candidates", "pairs", "contacts", "sleeping", "islands"]),
         (
             "error",
             vec![
@@ -154,7 +155,7 @@ fn every_scene_runs_and_its_json_keeps_the_contract() {
 #[test]
 fn every_option_reaches_the_run() {
     let line = "run polygons --bodies 40 --steps 5 --dt 0.005 --integrator yoshida4 --solver impulse \
-                --substeps 3 --broad grid --lanes 4 --precision f64 --seed 7 --skip rotation,friction --json";
+                --substeps 3 --broad grid --lanes 4 --precision f64 --seed 7 --skip rotation,friction --sleep --json";
     let result = lamina(&line.split_whitespace().collect::<Vec<_>>()).json();
     check_run(&result);
     let said = |field: &str| result[field].to_string().replace('"', "");
@@ -171,6 +172,7 @@ fn every_option_reaches_the_run() {
         ("precision", "f64"),
         ("seed", "7"),
         ("skip", "rotation,friction"),
+        ("sleep", "true"),
     ] {
         assert_eq!(said(field), value, "--{field}");
     }
@@ -190,6 +192,7 @@ fn a_scene_file_runs_with_its_settings_and_options_win_over_them() {
         ("lanes", "4"),
         ("precision", "\"f64\""),
         ("skip", "\"closed_form,friction\""),
+        ("sleep", "true"),
     ] {
         assert_eq!(result[field].to_string(), value, "{field}");
     }

@@ -93,11 +93,18 @@ impl<C> Batches<C> {
 const MOST: usize = 16;
 
 /// What constraints are made of.
-struct Sources<'a, R: Real> {
-    joints: &'a Joints<R>,
-    bodies: &'a Bodies<R>,
-    h_secs: f64,
-    share: f64,
+#[derive(Debug)]
+pub struct Sources<'a, R: Real> {
+    /// The joints.
+    pub joints: &'a Joints<R>,
+    /// What they join.
+    pub bodies: &'a Bodies<R>,
+    /// Seconds per substep.
+    pub h_secs: f64,
+    /// What an impulse changes a moving velocity by, over what it changes the velocity by.
+    pub share: f64,
+    /// By slot; a joint without an end that is awake has no constraint. `None`: all are.
+    pub awake: Option<&'a [bool]>,
 }
 
 impl<R: Real> Sources<'_, R> {
@@ -124,6 +131,7 @@ struct MadeFrom {
     bodies: u64,
     h_secs: f64,
     share: f64,
+    groupings: u64,
 }
 
 /// All joints in batches of lanes, colour by colour; memory is kept from step to step.
@@ -167,17 +175,19 @@ impl<L: Lanes> JointStream<L> {
         [self.pins.links.len(), self.rods.links.len()]
     }
 
-    /// Colours and constraints, where joints, bodies or the substep are others than those they were made from.
-    pub fn prepare(&mut self, joints: &Joints<L::Elem>, bodies: &Bodies<L::Elem>, h_secs: f64, share: f64) {
-        let from = MadeFrom { joints: joints.revision(), bodies: bodies.revision(), h_secs, share };
+    /// Colours and constraints, where their sources are others than those they were made from; `groupings`: how often
+    /// who is awake has changed.
+    pub fn prepare(&mut self, sources: &Sources<'_, L::Elem>, groupings: u64) {
+        let Sources { joints, bodies, h_secs, share, awake } = *sources;
+        let from =
+            MadeFrom { joints: joints.revision(), bodies: bodies.revision(), h_secs, share, groupings };
         let last = std::mem::replace(&mut self.made_from, from);
-        let sources = Sources { joints, bodies, h_secs, share };
-        if last == from {
+        if last == from || (joints.is_empty() && self.is_empty()) {
             return;
         }
-        if (last.joints, last.bodies) == (from.joints, from.bodies) {
-            self.pins.retune(&sources);
-            self.rods.retune(&sources);
+        if (last.joints, last.bodies, last.groupings) == (from.joints, from.bodies, groupings) {
+            self.pins.retune(sources);
+            self.rods.retune(sources);
             return;
         }
         self.pins.clear();
@@ -186,28 +196,30 @@ impl<L: Lanes> JointStream<L> {
         let colors = colors(joints, bodies);
         let of_color = |color: usize| {
             let pick = |rod: bool| -> Vec<u32> {
+                let is_awake = |id: BodyId| awake.is_none_or(|awake| awake[id.slot()]);
                 let good = |(place, joint): &(u32, &Joint)| {
                     colors[*place as usize] as usize == color
                         && matches!(joint.kind, JointKind::Distance(_)) == rod
+                        && joint.bodies.into_iter().any(is_awake)
                 };
                 joints.living().filter(good).map(|(place, _)| place).collect()
             };
             [pick(false), pick(true)]
         };
-        for color in 0..COLORS {
+        let used = colors.iter().map(|&color| usize::from(color) + 1).max().unwrap_or(0);
+        for color in 0..used.min(COLORS) {
             let [pins, rods] = of_color(color);
-            if pins.is_empty() && rods.is_empty() {
-                break;
+            if !pins.is_empty() || !rods.is_empty() {
+                self.append(&pins, &rods, L::WIDTH, sources);
             }
-            self.append(&pins, &rods, L::WIDTH, &sources);
         }
         // More joints on a body than colours: one at a time, in order.
         let [pins, rods] = of_color(COLORS);
         for place in pins {
-            self.append(&[place], &[], 1, &sources);
+            self.append(&[place], &[], 1, sources);
         }
         for place in rods {
-            self.append(&[], &[place], 1, &sources);
+            self.append(&[], &[place], 1, sources);
         }
     }
 

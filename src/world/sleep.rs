@@ -1,0 +1,147 @@
+//! Who sleeps in a world: what a step leaves out for it, and what wakes.
+//!
+//! | where in a step | what happens |
+//! |---|---|
+//! | [`World::rests`], as it begins | ends it if all that can move sleeps; else brings the runs up to date with who is awake |
+//! | [`World::regroup`], before pairs are chosen | sorts them into those that are looked at and those that rest |
+//! | [`World::wake_touched`], when contacts are found | no contact that is solved has a sleeping end |
+//! | [`World::doze`], as it ends | who has been quiet for long enough falls asleep |
+//!
+//! Constraints are handed back to the pairs before the runs change: gaps and impulses of what falls asleep stay
+//! there, and those of what wakes are taken from there. Such a step is never a still one, so that manifolds'
+//! constraints and the warm start are made anew.
+
+use super::World;
+use crate::body::{BodyError, BodyId};
+use crate::force::Forces;
+use crate::island::Islands;
+use crate::lanes::Lanes;
+use crate::scene::SceneError;
+
+impl<L: Lanes> World<L> {
+    /// Takes in which bodies there are, and which of them hang together without touching.
+    pub(super) fn look_over_islands(&mut self) {
+        if self.settings.sleep {
+            let links = self.joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
+            self.islands.look_over(&self.bodies, links);
+        }
+    }
+
+    /// Is there nothing to do, because all that can move sleeps? Else brings the runs up to date.
+    pub(super) fn rests(&mut self) -> bool {
+        if self.islands.is_still(&self.bodies) {
+            self.times.steps += 1;
+            return true;
+        }
+        self.follow_islands();
+        false
+    }
+
+    /// Brings the runs up to date with who is awake.
+    fn follow_islands(&mut self) {
+        if !self.islands.take_changed() {
+            return;
+        }
+        self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        match awake {
+            None => self.motion.go_over_all(&self.bodies),
+            Some(awake) => self.motion.go_over_awake(&self.bodies, awake, self.islands.asleep()),
+        }
+        self.broad.freeze(&self.bodies, awake);
+        self.regrouped = true;
+        self.groupings += 1;
+    }
+
+    /// Sorts the pairs into those that are looked at and those that rest, where that has changed.
+    pub(super) fn regroup(&mut self) {
+        if !std::mem::take(&mut self.regrouped) {
+            return;
+        }
+        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        self.narrow.manifolds.regroup(awake);
+    }
+
+    /// Wakes what is touched by what is awake, so that no contact of a step has a sleeping end.
+    pub(super) fn wake_touched(&mut self) {
+        let mut woke = false;
+        while !self.islands.is_empty() && self.islands.wake_touched(&self.narrow.manifolds) {
+            self.follow_islands();
+            self.regroup();
+            self.narrow.manifolds.refresh();
+            woke = true;
+        }
+        // What woke has no pairs but those it touches: the next step looks for more, whether anything stirs or not.
+        self.regrouped |= woke;
+    }
+
+    /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
+    pub(super) fn doze(&mut self, dt_secs: f64, changed: bool) {
+        let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
+        let tired = self.islands.tire::<L>(&self.bodies, runs, dt_secs, self.traits.gravity);
+        if tired.newly || (tired.some && changed) {
+            self.islands.settle(&mut self.bodies, manifolds, runs, !self.fields.is_empty());
+        }
+        self.counts.sleeping = self.islands.sleeping();
+        self.counts.islands = self.islands.len();
+    }
+
+    /// Before the body in a slot is forgotten.
+    pub(super) fn wake_what_rested_on(&mut self, slot: usize) {
+        self.islands.wake_around(slot, &self.narrow.manifolds);
+        // Only its own pairs: what others that sleep rest on has to be known until they wake.
+        self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+        self.narrow.manifolds.forget_slot(slot);
+        if let Some((_, removals)) = &mut self.inspected {
+            *removals += 1;
+        }
+    }
+
+    /// Sets the constant force and torque on a body, and wakes its island if they are others than before; see
+    /// [`Bodies::set_force`](crate::body::Bodies::set_force).
+    ///
+    /// # Errors
+    /// Those of [`Bodies::set_force`](crate::body::Bodies::set_force).
+    pub fn set_force(&mut self, id: BodyId, force: [f64; 2], torque: f64) -> Result<(), BodyError> {
+        let before = self.bodies.check_alive(id).map(|slot| self.bodies.force_on(slot))?;
+        self.bodies.set_force(id, force, torque)?;
+        if self.bodies.force_on(id.slot()) != before {
+            self.islands.wake(id.slot());
+        }
+        Ok(())
+    }
+
+    /// Sets the fields and wakes all.
+    ///
+    /// # Errors
+    /// Fields that cannot be run with; nothing has changed then.
+    pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
+        forces.check_in::<L::Elem>()?;
+        self.forces = forces;
+        self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));
+        self.islands.wake_all();
+        Ok(())
+    }
+
+    /// Wakes the island of a body; see [`crate::island`].
+    ///
+    /// # Errors
+    /// An id whose body is gone.
+    pub fn wake(&mut self, id: BodyId) -> Result<(), BodyError> {
+        let slot = self.bodies.check_alive(id)?;
+        self.islands.wake(slot);
+        Ok(())
+    }
+    /// Does a body sleep? One that is gone does not.
+    pub fn is_asleep(&self, id: BodyId) -> bool {
+        self.bodies.check_alive(id).is_ok_and(|slot| self.islands.is_asleep(slot))
+    }
+    /// Bodies that sleep.
+    pub fn sleeping(&self) -> usize {
+        self.islands.sleeping()
+    }
+    /// Who sleeps.
+    pub fn islands(&self) -> &Islands<L::Elem> {
+        &self.islands
+    }
+}
