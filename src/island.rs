@@ -385,7 +385,7 @@ impl<R: Real> Islands<R> {
 }
 
 /// The lowest slot of an island in the making; paths are halved on the way.
-fn root(parent: &mut [u32], slot: u32) -> u32 {
+pub(crate) fn root(parent: &mut [u32], slot: u32) -> u32 {
     let mut at = slot;
     while parent[at as usize] != at {
         let above = parent[parent[at as usize] as usize];

@@ -206,6 +206,12 @@ pub enum SettingsError {
     /// At least one substep.
     #[error("substeps must be 1 to 1000, got {0}")]
     Substeps(u32),
+    /// A bound on the sag is a positive length.
+    #[error("max-sag must be positive and finite, got {0:?} m")]
+    MaxSag(f64),
+    /// Only one solver knows what its contacts sag by.
+    #[error("max-sag needs the solver soft, got {0}")]
+    MaxSagSolver(Solver),
     /// Lane widths are 1, 4, 8 and 16 for f32, 1 and 4 for f64.
     #[error("lanes must be {choices} with {precision}, got {given}")]
     Lanes {
@@ -241,6 +247,9 @@ pub struct Settings {
     pub continuous: bool,
     /// Islands of bodies at rest fall asleep; see [`crate::island`].
     pub sleep: bool,
+    /// Each island has as many substeps as keep its contacts from sagging by more, metres; see [`crate::solve::pace`].
+    /// `substeps` is then what bodies have that touch nothing.
+    pub max_sag: Option<f64>,
 }
 
 impl Default for Settings {
@@ -256,6 +265,7 @@ impl Default for Settings {
             skips: Skips::ALL,
             continuous: true,
             sleep: false,
+            max_sag: None,
         }
     }
 }
@@ -282,7 +292,8 @@ impl Settings {
     /// Refuses what cannot be run.
     ///
     /// # Errors
-    /// A step that is not positive and finite, no substep, a lane width the precision does not have.
+    /// A step or bound on the sag that is not positive and finite, such a bound with a solver other than `soft`, no
+    /// substep, a lane width the precision does not have.
     pub fn check(&self) -> Result<(), SettingsError> {
         let dt_secs = match self.precision {
             Precision::F32 => f64::from(f32::from_f64(self.dt_secs)),
@@ -293,6 +304,14 @@ impl Settings {
         }
         if !(1..=1000).contains(&self.substeps) {
             return Err(SettingsError::Substeps(self.substeps));
+        }
+        if let Some(max_sag) = self.max_sag {
+            if !(max_sag > 0.0 && max_sag.is_finite()) {
+                return Err(SettingsError::MaxSag(max_sag));
+            }
+            if self.solver != Solver::Soft {
+                return Err(SettingsError::MaxSagSolver(self.solver));
+            }
         }
         if !Self::widths(self.precision).contains(&self.lanes) {
             let choices = match self.precision {

@@ -17,6 +17,7 @@ use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in,
 use crate::narrow::{Narrow, Stirred};
 use crate::scene::{BodyKind, BodySpec, Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
+use crate::solve::pace::Goal;
 use crate::solve::{self, Solving, Task, Traits};
 
 /// A step that could not be taken to its end.
@@ -235,6 +236,8 @@ impl<L: Lanes> World<L> {
         let manifolds = &self.narrow.manifolds;
         skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
         self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, traits);
+        let paces = self.solving.paces().span().filter(|_| !free_flight);
+        self.counts.substeps = paces.unwrap_or([substeps; 2]);
         self.times.steps += 1;
         self.check_finite(finite)?;
         if self.settings.sleep {
@@ -293,33 +296,61 @@ impl<L: Lanes> World<L> {
         clock: &mut Instant,
     ) -> (integrate::Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        if !seen.still {
-            solving.prepare(bodies, &mut self.narrow, seen.changed, motion);
+        let repaced = self.settings.max_sag.is_some_and(|max_sag| {
+            let goal = Goal { max_sag, base: task.plan.substeps, dt_secs: task.dt_secs };
+            solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
+        });
+        if repaced || !seen.still {
+            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
         }
         let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
-        let mut warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
+        let warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
-        for substep in 0..task.plan.substeps {
-            skipped = integrate::predict::<L>(task.plan, bodies, motion, warm);
-            warm = Warm::Onward;
-            self.times.lap(Stage::Integrate, clock);
-            solving.solve(task, motion, substep == 0);
-            self.times.lap(Stage::Solve, clock);
-            finite = integrate::advance::<L>(task.plan, motion);
-            self.times.lap(Stage::Integrate, clock);
-            if !finite {
-                // The next round's prediction would hide whether the solver began it.
-                break;
+        for pace in 0..self.solving.paces().count() {
+            if finite {
+                self.solving.enter_pace(pace, &mut self.motion);
+                (skipped, finite) = self.substeps(task, pace, warm, clock);
+                self.solving.leave_pace(pace, &mut self.motion);
             }
-            solving.settle(task, bodies, &mut self.narrow.manifolds, motion);
-            self.times.lap(Stage::Solve, clock);
         }
+        let (motion, solving) = (&mut self.motion, &mut self.solving);
         solving.end(task, &self.narrow.manifolds, motion);
         solving.end_joints(&mut self.joints);
         self.times.lap(Stage::Solve, clock);
         (skipped, finite)
+    }
+
+    /// The substeps of one pace; false if they broke off at a state that is not finite.
+    fn substeps(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        pace: usize,
+        mut warm: Warm,
+        clock: &mut Instant,
+    ) -> (integrate::Skipped, bool) {
+        let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
+        let substeps = solving.paces().substeps(pace).unwrap_or(task.plan.substeps);
+        let plan = Plan { substeps, h_secs: task.dt_secs / f64::from(substeps), ..*task.plan };
+        let task = &Task { plan: &plan, ..*task };
+        let mut skipped = integrate::Skipped::default();
+        for substep in 0..substeps {
+            skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
+            warm = Warm::Onward;
+            self.times.lap(Stage::Integrate, clock);
+            solving.solve(task, motion, substep == 0);
+            self.times.lap(Stage::Solve, clock);
+            let finite = integrate::advance::<L>(&plan, motion);
+            self.times.lap(Stage::Integrate, clock);
+            if !finite {
+                // The next round's prediction would hide whether the solver began it.
+                return (skipped, false);
+            }
+            solving.settle(task, bodies, &mut self.narrow.manifolds, motion);
+            self.times.lap(Stage::Solve, clock);
+        }
+        (skipped, true)
     }
 
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.

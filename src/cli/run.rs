@@ -58,6 +58,9 @@ pub(crate) struct Args {
     /// Let islands of bodies at rest fall asleep.
     #[arg(long)]
     sleep: bool,
+    /// Give each island as many substeps as keep its contacts from sagging by more than this, metres.
+    #[arg(long, allow_negative_numbers = true)]
+    max_sag: Option<f64>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -130,6 +133,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         skips: args.skip.unwrap_or(asked.skips),
         continuous: asked.continuous && !args.no_continuous,
         sleep: args.sleep || asked.sleep,
+        max_sag: args.max_sag.or(asked.max_sag),
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -187,6 +191,7 @@ fn describe(
             "contacts": counts.contacts,
             "sleeping": counts.sleeping,
             "islands": counts.islands,
+            "substeps": counts.substeps,
             "skipped": skipped,
         },
         "error": {
@@ -200,7 +205,12 @@ fn describe(
         "hash": format!("{:016x}", world.hash()),
     });
     match fields {
-        Value::Object(map) => Ok(map),
+        Value::Object(mut map) => {
+            if let Some(max_sag) = settings.max_sag {
+                map.insert("max_sag".to_owned(), json!(max_sag));
+            }
+            Ok(map)
+        }
         _ => unreachable!("an object literal"),
     }
 }

@@ -146,6 +146,10 @@ pub struct Motion<R: Real> {
     pub swift: bool,
     /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
     pub runs: Vec<Range<usize>>,
+    /// Which pace each slot has, and the one whose bodies move now; all do where it is `None`.
+    pub paces: Column<R>,
+    /// See `paces`.
+    pub pace: Option<R>,
 }
 
 /// Where a step's warm start is found before its first substep.
@@ -177,7 +181,24 @@ impl<R: Real> Default for Motion<R> {
             any_stirred: true,
             swift: true,
             runs: Vec::new(),
+            paces: Column::new(R::ZERO),
+            pace: None,
         }
+    }
+}
+
+/// Which lanes a pass over one pace changes: its bodies and, in all, those without mass. The others keep their rows.
+#[derive(Clone, Copy, Debug)]
+struct Chosen<L: Lanes> {
+    moves: L::Mask,
+    massless: L::Mask,
+}
+
+impl<L: Lanes> Chosen<L> {
+    #[inline(always)]
+    fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
+        let massless = inv_mass.le(L::zero());
+        Self { moves: paces.lanes::<L>()[at].equals(L::splat(pace)) | massless, massless }
     }
 }
 
@@ -548,6 +569,14 @@ fn predict_with<L: Lanes, S: Scheme>(
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
         let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
+        let chosen = motion
+            .pace
+            .map(|pace| std::array::from_fn(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i])));
+        // What drives them in one pace is no warm start in the next.
+        let chosen: Option<[Chosen<L>; BLOCK]> = chosen;
+        for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
+            *warm = warm.map(|warm| L::select(chosen.massless, L::zero(), warm));
+        }
         let matter = Matter { inv_mass: &inv_mass, ..matter(bodies, start) };
         let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
@@ -559,11 +588,22 @@ fn predict_with<L: Lanes, S: Scheme>(
             let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
             let mut row = [matter.inv_mass[i]; 4];
             for k in 0..3 {
-                motion.free[k].lanes_mut::<L>()[at] = free[k];
-                motion.ahead[k].lanes_mut::<L>()[at] = ahead[k];
-                motion.total[k].lanes_mut::<L>()[at] = total[i][k];
                 let base = if plan.moving { ahead[k] * per_h } else { free[k] };
                 row[k] = base + warm[i][k] * share;
+            }
+            let columns = [&mut motion.free, &mut motion.ahead, &mut motion.total];
+            for (column, mut new) in columns.into_iter().zip([free, ahead, total[i]]) {
+                for k in 0..3 {
+                    let value = &mut column[k].lanes_mut::<L>()[at];
+                    if let Some(chosen) = chosen {
+                        new[k] = L::select(chosen[i].moves, new[k], *value);
+                    }
+                    *value = new[k];
+                }
+            }
+            if let Some(chosen) = chosen {
+                let old = load_four::<L>(&motion.velocity, at);
+                row = std::array::from_fn(|k| L::select(chosen[i].moves, row[k], old[k]));
             }
             store_four::<L>(&mut motion.velocity, at, row);
         }
@@ -590,6 +630,12 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
             moved[k] = ahead + h * change;
             // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
             doubtful = doubtful + moved[k] * L::zero();
+        }
+        if let Some(pace) = motion.pace {
+            let chosen = Chosen::<L>::new(&motion.paces, pace, at, row[3]);
+            let old = load_four::<L>(&motion.moved, at);
+            velocity = std::array::from_fn(|k| L::select(chosen.moves, velocity[k], row[k]));
+            moved = std::array::from_fn(|k| L::select(chosen.moves, moved[k], old[k]));
         }
         store_four::<L>(&mut motion.velocity, at, velocity);
         store_four::<L>(&mut motion.moved, at, moved);

@@ -96,6 +96,8 @@ pub struct Counts {
     pub sleeping: usize,
     /// Islands they make up.
     pub islands: usize,
+    /// The least and the most substeps any body had.
+    pub substeps: [u32; 2],
     /// Per [`Skip`], how many bodies (motion) or contacts (contact terms) it spared work.
     pub skipped: [u64; Skip::ALL.len()],
 }

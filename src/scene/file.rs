@@ -37,6 +37,7 @@ struct FileSettings {
     skip: Option<String>,
     continuous: Option<bool>,
     sleep: Option<bool>,
+    max_sag: Option<f64>,
 }
 
 /// Reads a scene file and the settings it asks for (defaults elsewhere).
@@ -73,6 +74,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         skips: skips.map_err(|e| setting(e.to_string()))?,
         continuous: asked.continuous.unwrap_or(default.continuous),
         sleep: asked.sleep.unwrap_or(default.sleep),
+        max_sag: asked.max_sag,
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
     let steps = asked.steps.unwrap_or(600);

@@ -38,6 +38,7 @@ pub mod color;
 pub mod constraint;
 mod impulse;
 pub mod joint;
+pub mod pace;
 mod pgs;
 pub mod soft;
 mod solving;

@@ -1,9 +1,11 @@
 //! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
 
 use super::color::Coloring;
+use super::constraint::Constraint;
 use super::joint::{JointStream, Sources, Stiffness};
+use super::pace::{Goal, Paces};
 use super::soft::{self, Softness};
-use super::stream::{Stream, WarmStart};
+use super::stream::{Ends, Stream, Visit, WarmStart};
 use super::{Task, avbd, carries_impulses, impulse, pgs, pushes, xpbd};
 use crate::body::Bodies;
 use crate::contact::Manifolds;
@@ -25,6 +27,18 @@ enum Latest {
     BeforeDisplacements,
 }
 
+/// Gaps hear of displacements.
+struct Follow<'a, R> {
+    moved: &'a [[R; 4]],
+}
+
+impl<L: Lanes> Visit<L> for Follow<'_, L::Elem> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        c.follow(self.moved, &ends);
+    }
+}
+
 impl Latest {
     /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
     fn yet_to_follow<R: Real>(self, motion: &Motion<R>) -> Option<&[[R; 4]]> {
@@ -38,6 +52,9 @@ pub struct Solving<L: Lanes> {
     coloring: Coloring,
     stream: Stream<L>,
     joints: JointStream<L>,
+    paces: Paces<L::Elem>,
+    /// The pace that is being solved, where there are several.
+    pace: Option<usize>,
     bounces: soft::Bounces<L>,
     avbd: avbd::Avbd<L>,
     /// The graph of contacts is not the one `avbd` was cut for.
@@ -46,6 +63,9 @@ pub struct Solving<L: Lanes> {
     last_h_secs: f64,
     /// This substep over that one.
     scale: f64,
+    /// The same of joints.
+    last_joint_h_secs: f64,
+    joint_scale: f64,
     latest: Latest,
     /// Something may bounce in this step.
     bouncing: bool,
@@ -63,11 +83,15 @@ impl<L: Lanes> Default for Solving<L> {
             coloring: Coloring::default(),
             stream: Stream::default(),
             joints: JointStream::default(),
+            paces: Paces::default(),
+            pace: None,
             bounces: soft::Bounces::default(),
             avbd: avbd::Avbd::default(),
             recut: true,
             last_h_secs: 0.0,
             scale: 1.0,
+            last_joint_h_secs: 0.0,
+            joint_scale: 1.0,
             latest: Latest::default(),
             bouncing: false,
             until_summed: 0,
@@ -76,6 +100,59 @@ impl<L: Lanes> Default for Solving<L> {
 }
 
 impl<L: Lanes> Solving<L> {
+    /// Gives islands their substeps; says whether any has others than before. Then all constraints are to be prepared.
+    pub fn decide_paces(
+        &mut self,
+        goal: &Goal,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        joints: &Joints<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) -> bool {
+        if self.paces.looks() {
+            self.stream.visit(&mut self.paces.reading(goal));
+        }
+        let ends = joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
+        let changed = self.paces.decide(goal, bodies, manifolds, ends, &motion.runs);
+        if changed {
+            self.hand_back_rest(manifolds, motion);
+            self.paces.scale_impulses(bodies, manifolds);
+            motion.paces.clone_from(self.paces.index());
+        }
+        changed
+    }
+
+    /// How often substeps are counted out in a step: once for each number of them.
+    pub fn paces(&self) -> &Paces<L::Elem> {
+        &self.paces
+    }
+
+    /// Where there are several paces: passes go over one, until [`Solving::leave_pace`].
+    pub fn enter_pace(&mut self, pace: usize, motion: &mut Motion<L::Elem>) {
+        if self.paces.count() > 1 {
+            self.pace = Some(pace);
+            self.stream.choose(self.pace);
+            motion.pace = Some(L::Elem::from_f64(pace as f64));
+            std::mem::swap(&mut motion.runs, self.paces.runs_mut(pace));
+        }
+    }
+
+    /// After [`Solving::enter_pace`]: passes go over all contacts again. Gaps hear of the last displacements: those of
+    /// kinematic bodies will be of another substep when the next step begins.
+    pub fn leave_pace(&mut self, pace: usize, motion: &mut Motion<L::Elem>) {
+        if self.pace.take().is_some() {
+            self.stream.visit(&mut Follow { moved: motion.moved.fours() });
+            self.stream.choose(None);
+            motion.pace = None;
+            std::mem::swap(&mut motion.runs, self.paces.runs_mut(pace));
+        }
+    }
+
+    /// Are joints solved in this pace?
+    fn with_joints(&self) -> bool {
+        self.pace.is_none_or(|pace| self.paces.of_joints() == self.paces.substeps(pace))
+    }
+
     /// Makes constraints of the manifolds found: all of them where the graph of contacts has changed, else those of
     /// the pairs looked at.
     pub fn prepare(
@@ -88,7 +165,7 @@ impl<L: Lanes> Solving<L> {
         self.recut |= changed;
         if changed {
             self.coloring.run(bodies, &mut narrow.manifolds);
-            self.stream.cut(&self.coloring, &narrow.manifolds);
+            self.stream.cut(&self.coloring, &narrow.manifolds, &self.paces);
         } else {
             narrow.looked_at().for_each(|place| self.stream.touch(place));
         }
@@ -139,7 +216,10 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         awake: (Option<&[bool]>, u64),
     ) {
-        let [h_secs, share] = [task.plan.h_secs, task.plan.impulse_share()];
+        let substeps = self.paces.of_joints().unwrap_or(task.plan.substeps);
+        let [h_secs, share] = [task.dt_secs / f64::from(substeps), task.plan.impulse_share()];
+        let last = std::mem::replace(&mut self.last_joint_h_secs, h_secs);
+        self.joint_scale = if last > 0.0 { h_secs / last } else { 1.0 };
         self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0 }, awake.1);
         self.joints.place(bodies);
     }
@@ -179,7 +259,7 @@ impl<L: Lanes> Solving<L> {
         motion.clear_rows();
         if carries {
             let rows = motion.velocity.fours_mut();
-            self.joints.warm_start(rows, self.scale, 1.0);
+            self.joints.warm_start(rows, self.joint_scale, 1.0);
             self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.scale) });
         }
         Warm::Summed
@@ -193,12 +273,15 @@ impl<L: Lanes> Solving<L> {
         let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());
         // Joints have: they are placed at a step's beginning.
         let joints_moved = moved.filter(|_| !first);
-        let scale = if first { self.scale } else { 1.0 };
+        let scale = if first { self.joint_scale } else { 1.0 };
+        let with_joints = self.with_joints();
         let share = task.plan.impulse_share();
         let (stream, joints) = (&mut self.stream, &mut self.joints);
         match task.solver {
             Solver::Soft => {
-                joints.push(rows, None, &Stiffness::soft(h_secs, share));
+                if with_joints {
+                    joints.push(rows, None, &Stiffness::soft(h_secs, share));
+                }
                 let cap = soft::PUSH_CAP * task.traits.length / task.dt_secs;
                 stream.visit(&mut soft::Push {
                     rows,
@@ -241,11 +324,14 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) {
         let how = Stiffness::soft(task.plan.h_secs, task.plan.impulse_share());
+        let with_joints = self.with_joints();
         let (stream, joints) = (&mut self.stream, &mut self.joints);
         match task.solver {
             Solver::Soft => {
                 let (rows, per_sec) = (motion.velocity.fours_mut(), L::lit(1.0 / task.plan.h_secs));
-                joints.relax(rows, motion.moved.fours(), &how);
+                if with_joints {
+                    joints.relax(rows, motion.moved.fours(), &how);
+                }
                 if task.traits.friction {
                     stream.visit(&mut soft::Relax::<L, true> { rows, per_sec });
                 } else {
@@ -282,7 +368,7 @@ impl<L: Lanes> Solving<L> {
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        let settled = matches!(task.solver, Solver::Xpbd | Solver::Avbd);
+        let settled = self.paces.count() > 1 || matches!(task.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing {
             self.follow_pairs(task, manifolds, motion);
             let moved = (!settled).then_some(motion.moved.fours());
@@ -295,6 +381,7 @@ impl<L: Lanes> Solving<L> {
         }
         self.latest = match task.solver {
             Solver::Avbd => Latest::InPairs,
+            _ if settled => Latest::InConstraints,
             Solver::Xpbd => Latest::InConstraints,
             Solver::Soft | Solver::Pgs | Solver::Impulse => Latest::BeforeDisplacements,
         };

@@ -12,6 +12,7 @@
 
 use super::color::Coloring;
 use super::constraint::{Constraint, Parts, Point, Side};
+use super::pace::Paces;
 use crate::contact::Manifolds;
 use crate::lanes::{Lanes, Real};
 
@@ -181,14 +182,29 @@ struct Span {
 pub struct Stream<L: Lanes> {
     two: Batches<L, 2>,
     one: Batches<L, 1>,
+    /// Colour by colour within a pace, pace by pace.
     spans: Vec<Span>,
+    /// Where each pace's spans end.
+    pace_ends: Vec<usize>,
+    /// The spans passes go over.
+    active: std::ops::Range<usize>,
+    /// Places of one colour and pace, while batches are cut.
+    picked: Vec<u32>,
     /// Per place of a pair.
     batch_of: Vec<Home>,
 }
 
 impl<L: Lanes> Default for Stream<L> {
     fn default() -> Self {
-        Self { two: Batches::default(), one: Batches::default(), spans: Vec::new(), batch_of: Vec::new() }
+        Self {
+            two: Batches::default(),
+            one: Batches::default(),
+            spans: Vec::new(),
+            pace_ends: Vec::new(),
+            active: 0..0,
+            picked: Vec::new(),
+            batch_of: Vec::new(),
+        }
     }
 }
 
@@ -207,29 +223,21 @@ const NOWHERE: Home = Home { batch: 0, lane: 0, points: 0 };
 const ALL_LANES: u32 = u32::MAX;
 
 impl<L: Lanes> Stream<L> {
-    /// Cuts the colours into batches of at most `WIDTH` contacts.
-    pub fn cut(&mut self, coloring: &Coloring, manifolds: &Manifolds<L::Elem>) {
+    /// Cuts the colours into batches of at most `WIDTH` contacts, those of each pace apart.
+    pub fn cut(&mut self, coloring: &Coloring, manifolds: &Manifolds<L::Elem>, paces: &Paces<L::Elem>) {
         self.two.clear();
         self.one.clear();
         self.spans.clear();
+        self.pace_ends.clear();
         self.batch_of.clear();
         self.batch_of.resize(manifolds.pairs() + 2, NOWHERE);
-        let order = coloring.order();
-        for color in coloring.colors() {
-            let (two, one) = (self.two.len(), self.one.len());
-            self.two.push(&order[color.two.clone()], L::WIDTH, manifolds, &mut self.batch_of);
-            self.one.push(&order[color.one.clone()], L::WIDTH, manifolds, &mut self.batch_of);
-            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        for pace in 0..paces.count() {
+            self.cut_pace(coloring, manifolds, |place| {
+                paces.of_pair(manifolds.slots(place as usize)) == pace
+            });
+            self.pace_ends.push(self.spans.len());
         }
-        for &place in &order[coloring.overflow()] {
-            let (two, one) = (self.two.len(), self.one.len());
-            if manifolds.code(place as usize).points() == 2 {
-                self.two.push(&[place], 1, manifolds, &mut self.batch_of);
-            } else {
-                self.one.push(&[place], 1, manifolds, &mut self.batch_of);
-            }
-            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
-        }
+        self.active = 0..self.spans.len();
         let nothing = Parts {
             geometry: [L::zero(); 8],
             gap: [L::zero(); 4],
@@ -239,6 +247,47 @@ impl<L: Lanes> Stream<L> {
         };
         self.two.finish(Constraint::prepare(&nothing));
         self.one.finish(Constraint::prepare(&nothing));
+    }
+
+    fn cut_pace(
+        &mut self,
+        coloring: &Coloring,
+        manifolds: &Manifolds<L::Elem>,
+        belongs: impl Fn(u32) -> bool,
+    ) {
+        let order = coloring.order();
+        let mut picked = std::mem::take(&mut self.picked);
+        for color in coloring.colors() {
+            let (two, one) = (self.two.len(), self.one.len());
+            let pick = |places: &[u32], picked: &mut Vec<u32>| {
+                picked.clear();
+                picked.extend(places.iter().copied().filter(|&place| belongs(place)));
+            };
+            pick(&order[color.two.clone()], &mut picked);
+            self.two.push(&picked, L::WIDTH, manifolds, &mut self.batch_of);
+            pick(&order[color.one.clone()], &mut picked);
+            self.one.push(&picked, L::WIDTH, manifolds, &mut self.batch_of);
+            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        }
+        for &place in order[coloring.overflow()].iter().filter(|&&place| belongs(place)) {
+            let (two, one) = (self.two.len(), self.one.len());
+            if manifolds.code(place as usize).points() == 2 {
+                self.two.push(&[place], 1, manifolds, &mut self.batch_of);
+            } else {
+                self.one.push(&[place], 1, manifolds, &mut self.batch_of);
+            }
+            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        }
+        self.picked = picked;
+    }
+
+    /// Passes go over the contacts of one pace from now on, or over all.
+    pub fn choose(&mut self, pace: Option<usize>) {
+        self.active = match pace {
+            None => 0..self.spans.len(),
+            Some(0) => 0..self.pace_ends.first().copied().unwrap_or(0),
+            Some(pace) => self.pace_ends[pace - 1]..self.pace_ends[pace],
+        };
     }
 
     /// Notes that the manifold at a place was found anew.
@@ -259,10 +308,10 @@ impl<L: Lanes> Stream<L> {
         self.one.prepare_stale(manifolds, matter);
     }
 
-    /// One pass over all contacts: colour by colour, two-point contacts first, the overflow last.
+    /// One pass over the contacts chosen: colour by colour, two-point contacts first, the overflow last.
     #[inline(always)]
     pub fn visit(&mut self, visitor: &mut impl Visit<L>) {
-        for span in &self.spans {
+        for span in &self.spans[self.active.clone()] {
             self.two.visit(span.two.clone(), visitor);
             self.one.visit(span.one.clone(), visitor);
         }

@@ -50,6 +50,11 @@ fn a_bad_command_line_is_refused_by_name() {
         ("run stack --skip friction,work", &["skip", "'work'"]),
         ("run stack --substeps 0", &["substeps", "1 to 1000", "got 0"]),
         ("run stack --substeps 5000", &["substeps", "1 to 1000", "got 5000"]),
+        ("run stack --max-sag 0", &["max-sag", "positive", "got 0"]),
+        ("run stack --max-sag -1e-3", &["max-sag", "positive", "got -0.001"]),
+        ("run stack --max-sag inf", &["max-sag", "finite", "got inf"]),
+        ("run stack --max-sag nan", &["max-sag", "finite", "got NaN"]),
+        ("run stack --max-sag 1e-3 --solver xpbd", &["max-sag", "soft", "got xpbd"]),
         ("run stack --seed x", &["--seed", "'x'"]),
         ("bench --bodies 3", &["--bodies"]),
         ("determinism now", &["'now'"]),
@@ -161,6 +166,7 @@ fn a_bad_setting_in_a_file_is_refused_with_the_file() {
         ("substeps = 0", &["substeps", "got 0"]),
         ("lanes = 3", &["lanes", "got 3"]),
         ("lanes = 8\nprecision = 'f64'", &["lanes", "1 or 4", "f64", "got 8"]),
+        ("max_sag = 0", &["max-sag", "got 0"]),
         ("skip = 'work'", &["skip", "'work'", "closed_form"]),
     ];
     for (line, mentions) in table {

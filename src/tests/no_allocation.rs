@@ -53,6 +53,14 @@ fn resting_stacks_allocate_nothing() {
 }
 
 #[test]
+fn paced_islands_allocate_nothing() {
+    let settings = Settings { max_sag: Some(1e-3), ..Settings::default() };
+    for name in ["stack/10", "pyramids/3", "bridge/40"] {
+        hold(&named(name), settings, 600);
+    }
+}
+
+#[test]
 fn joints_allocate_nothing() {
     for name in ["bridge/40", "pendulum", "joint_grid/8"] {
         hold(&named(name), Settings::default(), 600);
