@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::ensure;
-use lamina2d::measure::Stage;
+use lamina2d::measure::{Counts, Stage};
 use lamina2d::report::Timing;
 use lamina2d::scene::{self, Scene};
 use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver};
@@ -59,7 +59,7 @@ pub(crate) struct Args {
     #[arg(long)]
     sleep: bool,
     /// Give each island as many substeps as keep its contacts from sagging by more than this, metres.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_hyphen_values = true)]
     max_sag: Option<f64>,
     /// Print JSON.
     #[arg(long)]
@@ -149,8 +149,6 @@ fn describe(
     let (settings, counts, times) = (world.settings(), world.counts(), world.times());
     let stages: Map<_, _> =
         Stage::ALL.iter().map(|s| (s.name().to_owned(), json!(times.mean_ns(*s).round()))).collect();
-    let skipped: Map<_, _> =
-        Skip::ALL.iter().map(|s| (s.name().to_owned(), json!(counts.skipped[*s as usize]))).collect();
     let (overlap, sums) = (world.penetration(), world.invariants());
     // JSON has no infinity: a finite state may still have an energy beyond all numbers.
     for (field, value) in [
@@ -185,15 +183,7 @@ fn describe(
         "sleep": settings.sleep,
         "ms_per_step": timing,
         "stages_ns": stages,
-        "counts": {
-            "candidates": counts.candidates,
-            "pairs": counts.pairs,
-            "contacts": counts.contacts,
-            "sleeping": counts.sleeping,
-            "islands": counts.islands,
-            "substeps": counts.substeps,
-            "skipped": skipped,
-        },
+        "counts": counted(&counts),
         "error": {
             "max_penetration": overlap.max,
             "mean_penetration": overlap.mean,
@@ -213,6 +203,21 @@ fn describe(
         }
         _ => unreachable!("an object literal"),
     }
+}
+
+/// What the last step counted, as JSON.
+fn counted(counts: &Counts) -> Value {
+    let skipped: Map<_, _> =
+        Skip::ALL.iter().map(|s| (s.name().to_owned(), json!(counts.skipped[*s as usize]))).collect();
+    json!({
+        "candidates": counts.candidates,
+        "pairs": counts.pairs,
+        "contacts": counts.contacts,
+        "sleeping": counts.sleeping,
+        "islands": counts.islands,
+        "substeps": counts.substeps,
+        "skipped": skipped,
+    })
 }
 
 fn print_table(result: &Map<String, Value>) -> anyhow::Result<()> {

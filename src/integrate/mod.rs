@@ -21,8 +21,10 @@
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
 
 mod explicit_euler;
+mod motion;
 mod position_verlet;
 mod rk4;
+mod scheme;
 mod semi_implicit_euler;
 mod velocity_verlet;
 mod yoshida4;
@@ -30,280 +32,17 @@ mod yoshida4;
 use std::ops::Range;
 
 use crate::body::Bodies;
-use crate::column::{Column, PAD};
+use crate::column::Column;
 use crate::force::{Field, Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::settings::{Integrator, Skip, Skips};
 use crate::vec2::{Rot, Vec2};
 
-/// Lane values a scheme advances together; fields are matched once for all of them.
-pub const BLOCK: usize = 4;
+pub use motion::{Motion, Warm};
+pub use scheme::{Advance, BLOCK, Block, Scheme, Step};
 
-/// A vector per body of a block.
-pub type Block<L> = [Vec2<L>; BLOCK];
-
-/// h, ½h and ½h² in lanes, seconds.
-#[derive(Clone, Copy, Debug)]
-pub struct Step<L> {
-    /// h.
-    pub h: L,
-    /// ½h.
-    pub half_h: L,
-    /// ½h².
-    pub half_h2: L,
-}
-
-impl<L: Lanes> Step<L> {
-    /// Of a step of `h_secs`.
-    pub fn new(h_secs: f64) -> Self {
-        let h = L::Elem::from_f64(h_secs);
-        let half = L::Elem::from_f64(0.5);
-        Self { h: L::splat(h), half_h: L::splat(half * h), half_h2: L::splat(half * h * h) }
-    }
-}
-
-/// What a scheme makes of one step of a block.
-#[derive(Clone, Copy, Debug)]
-pub struct Advance<L> {
-    /// Metres.
-    pub displacement: Block<L>,
-    /// At the end of the step, m/s.
-    pub velocity: Block<L>,
-}
-
-/// An integrator: the same signature for every scheme.
-pub trait Scheme {
-    /// Advances (x, v) by one step under `accel(x, v)`.
-    fn advance<L: Lanes>(
-        step: Step<L>,
-        x: &Block<L>,
-        v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
-    ) -> Advance<L>;
-
-    /// The angle turned and the angular velocity reached under constant angular acceleration.
-    #[inline(always)]
-    fn spin<L: Lanes>(step: Step<L>, w: L, alpha: L) -> (L, L) {
-        (step.h * w + step.half_h2 * alpha, w + step.h * alpha)
-    }
-}
-
-/// What every scheme of order ≥ 2 is under constant acceleration: x + hv + ½h²a, v + ha.
-///
-/// The schemes are written as this plus deviations between their stages, so the collapse is exact to the bit.
-struct ClosedForm;
-
-impl Scheme for ClosedForm {
-    #[inline(always)]
-    fn advance<L: Lanes>(
-        step: Step<L>,
-        x: &Block<L>,
-        v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
-    ) -> Advance<L> {
-        let a = accel(x, v);
-        Advance { displacement: drift(step, v, &a), velocity: along(v, step.h, &a) }
-    }
-}
-
-/// a + k·b for each body of a block.
-#[inline(always)]
-fn along<L: Lanes>(a: &Block<L>, k: L, b: &Block<L>) -> Block<L> {
-    std::array::from_fn(|i| a[i] + b[i] * k)
-}
-
-/// h·v + ½h²·a for each body of a block.
-#[inline(always)]
-fn drift<L: Lanes>(step: Step<L>, v: &Block<L>, a: &Block<L>) -> Block<L> {
-    std::array::from_fn(|i| v[i] * step.h + a[i] * step.half_h2)
-}
-
-/// Columns of a step in progress: what bodies moved so far, and one substep's prediction.
-#[derive(Clone, Debug)]
-pub struct Motion<R: Real> {
-    /// Displacement since the step began, the last substep's left out: x, y (metres), angle (rad).
-    total: [Column<R>; 3],
-    /// Velocity after the scheme, before contacts: x, y, angular.
-    free: [Column<R>; 3],
-    /// The scheme's displacement in this substep: x, y, angle.
-    ahead: [Column<R>; 3],
-    /// Rows of four per slot, what a solver gathers and scatters: vx, vy, ω, 1/m; before the first substep what
-    /// the warm start adds to velocities; during a push the moving velocity.
-    pub velocity: Column<R>,
-    /// Rows of four per slot: the last substep's displacement x, y, angle, –.
-    pub moved: Column<R>,
-    /// Rows of four per slot: 1/m, 1/I, –, –.
-    pub matter: Column<R>,
-    /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
-    pub acceleration: Column<R>,
-    /// Path since the body last stirred, turning counted at the bounding radius, metres.
-    drift: Column<R>,
-    /// Slots of bodies whose manifolds are to be found anew.
-    pub stirred: Vec<bool>,
-    /// Is there one?
-    pub any_stirred: bool,
-    /// May two bodies meet faster than the bounce threshold?
-    pub swift: bool,
-    /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
-    pub runs: Vec<Range<usize>>,
-    /// Which pace each slot has, and the one whose bodies move now; all do where it is `None`.
-    pub paces: Column<R>,
-    /// See `paces`.
-    pub pace: Option<R>,
-}
-
-/// Where a step's warm start is found before its first substep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Warm {
-    /// The step goes on: rows hold velocities, and what contacts changed them by since the last prediction is
-    /// the warm start.
-    Onward,
-    /// A step begins as the last one ended: like [`Warm::Onward`], displacements start at 0.
-    Carried,
-    /// A step begins and rows hold what was summed over contacts.
-    Summed,
-}
-
-impl<R: Real> Default for Motion<R> {
-    fn default() -> Self {
-        let zeros = || Column::new(R::ZERO);
-        let three = || std::array::from_fn(|_| zeros());
-        Self {
-            total: three(),
-            free: three(),
-            ahead: three(),
-            velocity: zeros(),
-            moved: zeros(),
-            matter: zeros(),
-            acceleration: zeros(),
-            drift: zeros(),
-            stirred: Vec::new(),
-            any_stirred: true,
-            swift: true,
-            runs: Vec::new(),
-            paces: Column::new(R::ZERO),
-            pace: None,
-        }
-    }
-}
-
-/// Which lanes a pass over one pace changes: its bodies and, in all, those without mass. The others keep their rows.
-#[derive(Clone, Copy, Debug)]
-struct Chosen<L: Lanes> {
-    moves: L::Mask,
-    massless: L::Mask,
-}
-
-impl<L: Lanes> Chosen<L> {
-    #[inline(always)]
-    fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
-        let massless = inv_mass.le(L::zero());
-        Self { moves: paces.lanes::<L>()[at].equals(L::splat(pace)) | massless, massless }
-    }
-}
-
-impl<R: Real> Motion<R> {
-    /// Makes room for the bodies and notes their masses; allocates only when the world grows.
-    pub fn resize(&mut self, bodies: &Bodies<R>) {
-        let len = bodies.len();
-        for column in self.total.iter_mut().chain(&mut self.free).chain(&mut self.ahead) {
-            column.resize(len);
-        }
-        self.drift.resize(len);
-        // A row for every lane of the last block, padding included.
-        let padded = len.next_multiple_of(PAD);
-        for rows in [&mut self.velocity, &mut self.moved, &mut self.matter, &mut self.acceleration] {
-            rows.resize(padded * 4);
-        }
-        self.stirred.resize(padded, false);
-        self.go_over_all(bodies);
-    }
-
-    /// A step goes over all bodies.
-    pub fn go_over_all(&mut self, bodies: &Bodies<R>) {
-        let len = bodies.len();
-        for (slot, row) in self.matter.fours_mut()[..len].iter_mut().enumerate() {
-            *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
-        }
-        self.runs.clear();
-        self.runs.push(0..len);
-    }
-
-    /// A step goes over the blocks of [`PAD`] slots in which something is awake. Bodies that sleep there have no
-    /// mass, so that nothing moves them; the rows of the other blocks become those of bodies at rest.
-    pub fn go_over_awake(&mut self, bodies: &Bodies<R>, awake: &[bool], asleep: &[bool]) {
-        self.go_over_all(bodies);
-        self.runs.clear();
-        let len = bodies.len();
-        for start in (0..len).step_by(PAD) {
-            let end = (start + PAD).min(len);
-            if !awake[start..end].contains(&true) {
-                for rows in [&mut self.velocity, &mut self.moved, &mut self.acceleration] {
-                    rows.fours_mut()[start..start + PAD].fill([R::ZERO; 4]);
-                }
-            } else if let Some(last) = self.runs.last_mut().filter(|last| last.end == start) {
-                last.end = end;
-            } else {
-                self.runs.push(start..end);
-            }
-        }
-        let rows = self.matter.fours_mut()[..len].iter_mut().zip(asleep);
-        rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
-    }
-
-    /// All bodies begin to drift anew.
-    pub fn forget_drift(&mut self) {
-        self.drift.padded_mut().fill(R::ZERO);
-    }
-
-    /// Was what the scheme predicted for a slot, before contacts, finite: where a non-finite state began.
-    pub fn predicted_finite(&self, slot: usize) -> bool {
-        self.free.iter().chain(&self.ahead).all(|column| column[slot].is_finite())
-    }
-
-    /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
-    pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
-        for at in starts_in::<L>(&self.runs) {
-            let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
-            let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
-            let w = block::<L>(&bodies.w, at);
-            let matter = matter(bodies, at);
-            let pull = acceleration(plan.fields, matter, &x, &v);
-            let alpha = angular_acceleration::<L>(bodies, at);
-            for i in 0..BLOCK {
-                let spin = alpha.map_or(L::zero(), |a| a[i]);
-                store_four::<L>(&mut self.velocity, at + i, [v[i].x, v[i].y, w[i], matter.inv_mass[i]]);
-                store_four::<L>(&mut self.acceleration, at + i, [pull[i].x, pull[i].y, spin, L::zero()]);
-            }
-        }
-    }
-
-    /// Rows of no velocity: what a warm start sums into.
-    pub fn clear_rows(&mut self) {
-        for run in &self.runs {
-            let slots = run.start..run.end.next_multiple_of(PAD);
-            let rows = self.velocity.fours_mut()[slots.clone()].iter_mut();
-            for (row, matter) in rows.zip(&self.matter.fours()[slots]) {
-                *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
-            }
-        }
-    }
-}
-
-/// `WIDTH` consecutive rows of four, transposed.
-#[inline(always)]
-fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
-    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
-}
-
-/// The inverse of [`load_four`].
-#[inline(always)]
-fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
-    L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
-}
-
-/// 0, 1, 2, …: gathers of neighbouring rows.
-const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+use motion::{Chosen, load_four, store_four};
+use scheme::{ClosedForm, along, drift};
 
 /// A body that moved further in a step than it may unseen: where it began, and how far it went. 32 B in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -529,22 +268,37 @@ fn fly_with<L: Lanes, S: Scheme>(
     skipped
 }
 
-fn predict_with<L: Lanes, S: Scheme>(
-    plan: &Plan<'_, L::Elem>,
-    bodies: &Bodies<L::Elem>,
-    motion: &mut Motion<L::Elem>,
-    from: Warm,
-) {
-    let step = Step::new(plan.h_secs);
-    let per_h = L::lit(1.0 / plan.h_secs);
-    let share = L::lit(plan.impulse_share());
-    let runs = std::mem::take(&mut motion.runs);
-    for start in starts_in::<L>(&runs) {
-        // From the rows, where bodies that sleep have none.
-        let mut inv_mass = [L::zero(); BLOCK];
-        let mut state = [[L::zero(); 3]; BLOCK];
-        let mut warm = [[L::zero(); 3]; BLOCK];
-        let mut total = [[L::zero(); 3]; BLOCK];
+/// A block of bodies as a substep begins.
+struct Begun<L: Lanes> {
+    /// From the rows, where bodies that sleep have none.
+    inv_mass: [L; BLOCK],
+    /// vx, vy, ω.
+    state: [[L; 3]; BLOCK],
+    /// What contacts are expected to change them by.
+    warm: [[L; 3]; BLOCK],
+    /// Displacement since the step began.
+    total: [[L; 3]; BLOCK],
+}
+
+impl<L: Lanes> Default for Begun<L> {
+    #[inline(always)]
+    fn default() -> Self {
+        let zeros = [[L::zero(); 3]; BLOCK];
+        Self { inv_mass: [L::zero(); BLOCK], state: zeros, warm: zeros, total: zeros }
+    }
+}
+
+impl<L: Lanes> Begun<L> {
+    #[inline(always)]
+    fn read(
+        &mut self,
+        carries: bool,
+        bodies: &Bodies<L::Elem>,
+        motion: &Motion<L::Elem>,
+        start: usize,
+        from: Warm,
+    ) {
+        let Self { inv_mass, state, warm, total } = self;
         for i in 0..BLOCK {
             let at = start + i;
             let [px, py, pw, held] = load_four::<L>(&motion.velocity, at);
@@ -552,7 +306,7 @@ fn predict_with<L: Lanes, S: Scheme>(
             state[i] = [px, py, pw];
             if from == Warm::Summed {
                 warm[i] = state[i];
-            } else if plan.carries {
+            } else if carries {
                 for k in 0..3 {
                     warm[i][k] = state[i][k] - motion.free[k].lanes::<L>()[at];
                 }
@@ -566,18 +320,34 @@ fn predict_with<L: Lanes, S: Scheme>(
                 state[i] = [bodies.vx.lanes()[at], bodies.vy.lanes()[at], bodies.w.lanes()[at]];
             }
         }
+    }
+}
+
+fn predict_with<L: Lanes, S: Scheme>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &Bodies<L::Elem>,
+    motion: &mut Motion<L::Elem>,
+    from: Warm,
+) {
+    let step = Step::new(plan.h_secs);
+    let per_h = L::lit(1.0 / plan.h_secs);
+    let share = L::lit(plan.impulse_share());
+    let runs = std::mem::take(&mut motion.runs);
+    for start in starts_in::<L>(&runs) {
+        let mut begun = Begun::default();
+        begun.read(plan.carries, bodies, motion, start, from);
+        let Begun { inv_mass, state, warm, total } = &mut begun;
+        let chosen = motion.pace.map(|pace| -> [Chosen<L>; BLOCK] {
+            std::array::from_fn(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i]))
+        });
+        for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
+            // What drives bodies without mass in one pace is no warm start in the next.
+            *warm = warm.map(|warm| L::select(chosen.massless, L::zero(), warm));
+        }
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
         let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
-        let chosen = motion
-            .pace
-            .map(|pace| std::array::from_fn(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i])));
-        // What drives them in one pace is no warm start in the next.
-        let chosen: Option<[Chosen<L>; BLOCK]> = chosen;
-        for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
-            *warm = warm.map(|warm| L::select(chosen.massless, L::zero(), warm));
-        }
-        let matter = Matter { inv_mass: &inv_mass, ..matter(bodies, start) };
+        let matter = Matter { inv_mass, ..matter(bodies, start) };
         let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
         for i in 0..BLOCK {
@@ -595,13 +365,13 @@ fn predict_with<L: Lanes, S: Scheme>(
             for (column, mut new) in columns.into_iter().zip([free, ahead, total[i]]) {
                 for k in 0..3 {
                     let value = &mut column[k].lanes_mut::<L>()[at];
-                    if let Some(chosen) = chosen {
+                    if let Some(chosen) = &chosen {
                         new[k] = L::select(chosen[i].moves, new[k], *value);
                     }
                     *value = new[k];
                 }
             }
-            if let Some(chosen) = chosen {
+            if let Some(chosen) = &chosen {
                 let old = load_four::<L>(&motion.velocity, at);
                 row = std::array::from_fn(|k| L::select(chosen[i].moves, row[k], old[k]));
             }

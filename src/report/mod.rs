@@ -18,7 +18,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use experiments::{broad_phase, contacts, determinism, flight, lanes, matrix, skips, stability};
+use experiments::{broad_phase, contacts, determinism, flight, lanes, matrix, skips, sleep, stability};
 
 pub use machine::Machine;
 pub use timing::{Timing, fitted_exponent, median};
@@ -42,6 +42,8 @@ pub struct Data {
     pub contacts: Vec<contacts::Row>,
     /// Piles that are hard to hold, by every solver.
     pub stability: Vec<stability::Row>,
+    /// Piles awake and asleep.
+    pub sleep: Vec<sleep::Row>,
     /// Each skip on and off.
     pub skips: Vec<skips::Row>,
     /// Free flight against copy bandwidth.
@@ -51,7 +53,7 @@ pub struct Data {
 impl Data {
     /// How often [`Data::measure`] calls its `tick`.
     pub fn rounds(quick: bool) -> u64 {
-        plan(quick).rounds() + 7
+        plan(quick).rounds() + 8
     }
 
     /// Runs all experiments; `tick` is told what has just been done.
@@ -70,6 +72,8 @@ impl Data {
         tick("contacts");
         let stability = stability::run(quick, if quick { 2.0 } else { 10.0 })?;
         tick("stability");
+        let sleep = sleep::run(quick)?;
+        tick("sleep");
         let skips = skips::run(if quick { 4 } else { 16 })?;
         tick("skips");
         let flight = flight::run(if quick { 20 } else { 100 })?;
@@ -83,6 +87,7 @@ impl Data {
             lanes,
             contacts,
             stability,
+            sleep,
             skips,
             flight,
         })
@@ -126,6 +131,7 @@ impl Data {
             "lanes": self.lanes,
             "contacts": self.contacts,
             "stability": self.stability,
+            "sleep": self.sleep,
             "skips": self.skips,
             "flight": self.flight,
             "determinism": self.determinism,
@@ -174,6 +180,7 @@ pub fn write(data: &Data, folder: &Path) -> anyhow::Result<()> {
     write_csv(folder, "lanes", &data.lanes)?;
     write_csv(folder, "contacts", &data.contacts)?;
     write_csv(folder, "stability", &data.stability)?;
+    write_csv(folder, "sleep", &data.sleep)?;
     write_csv(folder, "skips", &data.skips)?;
     write_csv(folder, "flight", &data.flight)?;
     let plots = plots::draw(data)?;

@@ -60,6 +60,7 @@ fn tables(data: &Data) -> Vec<Table> {
         lanes(data),
         contacts(data),
         stability(data),
+        sleep(data),
         skips(data),
         flight(data),
     ]
@@ -279,7 +280,7 @@ fn stability(data: &Data) -> Table {
         title: "Stability: run time against error",
         command: "lamina report",
         note: "Piles left to stand. A drift of a body's size says that it fell. `avbd` visits contacts ten times per \
-               substep, `pgs` eight times, `soft` and `xpbd` twice.",
+               substep, `pgs` eight times, `soft` and `xpbd` twice. `sag`: substeps per island (`--max-sag`).",
         header: vec![
             "scene",
             "solver",
@@ -293,6 +294,42 @@ fn stability(data: &Data) -> Table {
             "broke off",
         ],
         rows: data.stability.iter().map(row).collect(),
+    }
+}
+
+fn sleep(data: &Data) -> Table {
+    let row = |r: &super::sleep::Row| {
+        vec![
+            r.scene.to_owned(),
+            r.substeps.to_string(),
+            r.bodies.to_string(),
+            r.slept_after.map_or_else(|| "–".to_owned(), |steps| steps.to_string()),
+            format!("{:.4}", r.awake_ms),
+            format!("{:.5}", r.asleep_ms),
+            format!("{:.3} %", r.share * 100.0),
+            format!("{:.2}", r.beside_us),
+            format!("{:.2}", r.alone_us),
+            format!("{:.2}", r.ns_per_sleeper),
+        ]
+    };
+    Table {
+        title: "Sleep",
+        command: "lamina report",
+        note: "Piles with sleep on: a step awake, a step when all sleep, and a step in which one other body flies by \
+               at 50 m/s, which finds its pairs anew in every step: beside the pile and without it.",
+        header: vec![
+            "scene",
+            "substeps",
+            "bodies",
+            "asleep after steps",
+            "awake ms",
+            "asleep ms",
+            "asleep / awake",
+            "beside a flier µs",
+            "flier alone µs",
+            "ns per sleeper",
+        ],
+        rows: data.sleep.iter().map(row).collect(),
     }
 }
 

@@ -194,7 +194,8 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
     let stands = |row: &&stability::Row| row.scene == SCENE && row.failed.is_none() && row.drift < 0.5;
     let of = |solver: &Solver| {
         let rows = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
-        let points: Vec<_> = rows.map(|r| (r.ms_per_step, r.max_penetration.max(1e-7) * 1e3)).collect();
+        let mut points: Vec<_> = rows.map(|r| (r.ms_per_step, r.max_penetration.max(1e-7) * 1e3)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let substeps = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
         let substeps: Vec<_> = substeps.map(|r| r.substeps.to_string()).collect();
         Series { name: format!("{solver}, {} substeps", substeps.join(", ")), points }

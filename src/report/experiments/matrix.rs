@@ -82,8 +82,8 @@ impl Plan {
             integrators: vec![Integrator::SemiImplicitEuler, Integrator::VelocityVerlet, Integrator::Rk4],
             lanes: vec![1, 8],
             windows: vec![
-                Windows { bodies: 150, count: 12, steps: 20 },
-                Windows { bodies: 1000, count: 3, steps: 10 },
+                Windows { bodies: 150, count: 10, steps: 20 },
+                Windows { bodies: 1000, count: 2, steps: 10 },
             ],
         }
     }

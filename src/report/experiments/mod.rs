@@ -11,6 +11,7 @@ pub mod flight;
 pub mod lanes;
 pub mod matrix;
 pub mod skips;
+pub mod sleep;
 pub mod stability;
 
 use std::time::Instant;

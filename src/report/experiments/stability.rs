@@ -17,8 +17,8 @@ pub struct Row {
     pub scene: &'static str,
     /// The solver.
     pub solver: Solver,
-    /// Substeps per step.
-    pub substeps: u32,
+    /// Substeps per step, or the bound on the sag they follow from.
+    pub substeps: Substeps,
     /// Simulated time, s.
     pub seconds: f64,
     /// Median time per step, ms.
@@ -47,15 +47,40 @@ const SCENES: [&str; 10] = [
     "cards/3",
     "cards/4",
 ];
-const CHOICES: [(Solver, u32); 7] = [
-    (Solver::Soft, 2),
-    (Solver::Soft, 4),
-    (Solver::Soft, 8),
-    (Solver::Soft, 16),
-    (Solver::Pgs, 4),
-    (Solver::Xpbd, 8),
-    (Solver::Avbd, 1),
+const CHOICES: [(Solver, Substeps); 8] = [
+    (Solver::Soft, Substeps::Fixed(2)),
+    (Solver::Soft, Substeps::Fixed(4)),
+    (Solver::Soft, Substeps::Fixed(8)),
+    (Solver::Soft, Substeps::Fixed(16)),
+    (Solver::Soft, Substeps::ForSag(1e-3)),
+    (Solver::Pgs, Substeps::Fixed(4)),
+    (Solver::Xpbd, Substeps::Fixed(8)),
+    (Solver::Avbd, Substeps::Fixed(1)),
 ];
+
+/// How substeps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Substeps {
+    /// The same number for all.
+    Fixed(u32),
+    /// Per island, for contacts that sag by so much at most, metres; see [`crate::solve::pace`].
+    ForSag(f64),
+}
+
+impl Serialize for Substeps {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl std::fmt::Display for Substeps {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Fixed(substeps) => write!(f, "{substeps}"),
+            Self::ForSag(metres) => write!(f, "sag {} mm", metres * 1e3),
+        }
+    }
+}
 
 /// Lets each scene stand for `seconds` with each solver.
 ///
@@ -74,9 +99,13 @@ pub fn run(quick: bool, seconds: f64) -> anyhow::Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn stand(name: &'static str, solver: Solver, substeps: u32, seconds: f64) -> anyhow::Result<Row> {
+fn stand(name: &'static str, solver: Solver, substeps: Substeps, seconds: f64) -> anyhow::Result<Row> {
     let scene = by_name(name, None, 1)?;
-    let mut world = simulate(&scene, Settings { solver, substeps, ..Settings::default() })?;
+    let settings = match substeps {
+        Substeps::Fixed(substeps) => Settings { solver, substeps, ..Settings::default() },
+        Substeps::ForSag(max_sag) => Settings { solver, max_sag: Some(max_sag), ..Settings::default() },
+    };
+    let mut world = simulate(&scene, settings)?;
     let begun = world.states();
     let mut samples_ms = Vec::new();
     let mut failed = None;

@@ -1,0 +1,196 @@
+//! A step in progress: what bodies have moved so far, one substep's prediction, and the rows solvers work on.
+
+use std::ops::Range;
+
+use super::{BLOCK, Plan, angular_acceleration, block, matter, starts_in, vectors};
+use crate::body::Bodies;
+use crate::column::{Column, PAD};
+use crate::force::acceleration;
+use crate::lanes::{Lanes, Real};
+
+/// Columns of a step in progress: what bodies moved so far, and one substep's prediction.
+#[derive(Clone, Debug)]
+pub struct Motion<R: Real> {
+    /// Displacement since the step began, the last substep's left out: x, y (metres), angle (rad).
+    pub(super) total: [Column<R>; 3],
+    /// Velocity after the scheme, before contacts: x, y, angular.
+    pub(super) free: [Column<R>; 3],
+    /// The scheme's displacement in this substep: x, y, angle.
+    pub(super) ahead: [Column<R>; 3],
+    /// Rows of four per slot, what a solver gathers and scatters: vx, vy, ω, 1/m; before the first substep what
+    /// the warm start adds to velocities; during a push the moving velocity.
+    pub velocity: Column<R>,
+    /// Rows of four per slot: the last substep's displacement x, y, angle, –.
+    pub moved: Column<R>,
+    /// Rows of four per slot: 1/m, 1/I, –, –.
+    pub matter: Column<R>,
+    /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
+    pub acceleration: Column<R>,
+    /// Path since the body last stirred, turning counted at the bounding radius, metres.
+    pub(super) drift: Column<R>,
+    /// Slots of bodies whose manifolds are to be found anew.
+    pub stirred: Vec<bool>,
+    /// Is there one?
+    pub any_stirred: bool,
+    /// May two bodies meet faster than the bounce threshold?
+    pub swift: bool,
+    /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
+    pub runs: Vec<Range<usize>>,
+    /// Which pace each slot has, and the one whose bodies move now; all do where it is `None`.
+    pub paces: Column<R>,
+    /// See `paces`.
+    pub pace: Option<R>,
+}
+
+/// Where a step's warm start is found before its first substep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Warm {
+    /// The step goes on: rows hold velocities, and what contacts changed them by since the last prediction is
+    /// the warm start.
+    Onward,
+    /// A step begins as the last one ended: like [`Warm::Onward`], displacements start at 0.
+    Carried,
+    /// A step begins and rows hold what was summed over contacts.
+    Summed,
+}
+
+impl<R: Real> Default for Motion<R> {
+    fn default() -> Self {
+        let zeros = || Column::new(R::ZERO);
+        let three = || std::array::from_fn(|_| zeros());
+        Self {
+            total: three(),
+            free: three(),
+            ahead: three(),
+            velocity: zeros(),
+            moved: zeros(),
+            matter: zeros(),
+            acceleration: zeros(),
+            drift: zeros(),
+            stirred: Vec::new(),
+            any_stirred: true,
+            swift: true,
+            runs: Vec::new(),
+            paces: Column::new(R::ZERO),
+            pace: None,
+        }
+    }
+}
+
+/// Which lanes a pass over one pace changes: its bodies and, in all, those without mass. The others keep their rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chosen<L: Lanes> {
+    pub(super) moves: L::Mask,
+    pub(super) massless: L::Mask,
+}
+
+impl<L: Lanes> Chosen<L> {
+    #[inline(always)]
+    pub(super) fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
+        let massless = inv_mass.le(L::zero());
+        Self { moves: paces.lanes::<L>()[at].equals(L::splat(pace)) | massless, massless }
+    }
+}
+
+impl<R: Real> Motion<R> {
+    /// Makes room for the bodies and notes their masses; allocates only when the world grows.
+    pub fn resize(&mut self, bodies: &Bodies<R>) {
+        let len = bodies.len();
+        for column in self.total.iter_mut().chain(&mut self.free).chain(&mut self.ahead) {
+            column.resize(len);
+        }
+        self.drift.resize(len);
+        // A row for every lane of the last block, padding included.
+        let padded = len.next_multiple_of(PAD);
+        for rows in [&mut self.velocity, &mut self.moved, &mut self.matter, &mut self.acceleration] {
+            rows.resize(padded * 4);
+        }
+        self.stirred.resize(padded, false);
+        self.go_over_all(bodies);
+    }
+
+    /// A step goes over all bodies.
+    pub fn go_over_all(&mut self, bodies: &Bodies<R>) {
+        let len = bodies.len();
+        for (slot, row) in self.matter.fours_mut()[..len].iter_mut().enumerate() {
+            *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
+        }
+        self.runs.clear();
+        self.runs.push(0..len);
+    }
+
+    /// A step goes over the blocks of [`PAD`] slots in which something is awake. Bodies that sleep there have no
+    /// mass, so that nothing moves them; the rows of the other blocks become those of bodies at rest.
+    pub fn go_over_awake(&mut self, bodies: &Bodies<R>, awake: &[bool], asleep: &[bool]) {
+        self.go_over_all(bodies);
+        self.runs.clear();
+        let len = bodies.len();
+        for start in (0..len).step_by(PAD) {
+            let end = (start + PAD).min(len);
+            if !awake[start..end].contains(&true) {
+                for rows in [&mut self.velocity, &mut self.moved, &mut self.acceleration] {
+                    rows.fours_mut()[start..start + PAD].fill([R::ZERO; 4]);
+                }
+            } else if let Some(last) = self.runs.last_mut().filter(|last| last.end == start) {
+                last.end = end;
+            } else {
+                self.runs.push(start..end);
+            }
+        }
+        let rows = self.matter.fours_mut()[..len].iter_mut().zip(asleep);
+        rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
+    }
+
+    /// All bodies begin to drift anew.
+    pub fn forget_drift(&mut self) {
+        self.drift.padded_mut().fill(R::ZERO);
+    }
+
+    /// Was what the scheme predicted for a slot, before contacts, finite: where a non-finite state began.
+    pub fn predicted_finite(&self, slot: usize) -> bool {
+        self.free.iter().chain(&self.ahead).all(|column| column[slot].is_finite())
+    }
+
+    /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
+    pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
+        for at in starts_in::<L>(&self.runs) {
+            let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
+            let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
+            let w = block::<L>(&bodies.w, at);
+            let matter = matter(bodies, at);
+            let pull = acceleration(plan.fields, matter, &x, &v);
+            let alpha = angular_acceleration::<L>(bodies, at);
+            for i in 0..BLOCK {
+                let spin = alpha.map_or(L::zero(), |a| a[i]);
+                store_four::<L>(&mut self.velocity, at + i, [v[i].x, v[i].y, w[i], matter.inv_mass[i]]);
+                store_four::<L>(&mut self.acceleration, at + i, [pull[i].x, pull[i].y, spin, L::zero()]);
+            }
+        }
+    }
+
+    /// Rows of no velocity: what a warm start sums into.
+    pub fn clear_rows(&mut self) {
+        for run in &self.runs {
+            let slots = run.start..run.end.next_multiple_of(PAD);
+            let rows = self.velocity.fours_mut()[slots.clone()].iter_mut();
+            for (row, matter) in rows.zip(&self.matter.fours()[slots]) {
+                *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
+            }
+        }
+    }
+}
+
+/// `WIDTH` consecutive rows of four, transposed.
+#[inline(always)]
+pub(super) fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
+    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
+}
+
+/// The inverse of [`load_four`].
+#[inline(always)]
+pub(super) fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
+    L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
+}
+
+/// 0, 1, 2, …: gathers of neighbouring rows.
+pub(super) const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
