@@ -272,14 +272,16 @@ fn stability(data: &Data) -> Table {
             format!("{:.2}", r.max_penetration * 1e3),
             format!("{:.2}", r.mean_penetration * 1e3),
             format!("{:.1e}", r.rms_speed),
-            format!("{:.3}", r.drift),
+            format!("{:.3}", r.moved),
+            format!("{:.4}", r.drift),
             r.failed.clone().unwrap_or_else(|| "–".to_owned()),
         ]
     };
     Table {
         title: "Stability: run time against error",
         command: "lamina report",
-        note: "Piles left to stand. A drift of a body's size says that it fell. `avbd` visits contacts ten times per \
+        note: "Piles left to stand. Moved: the farthest any body is from where it began, which is what it has sunk; \
+               a body's size or more says that it fell. Drift: since half the time. `avbd` visits contacts ten times per \
                substep, `pgs` eight times, `soft` and `xpbd` twice. `sag`: substeps per island (`--max-sag`).",
         header: vec![
             "scene",
@@ -290,6 +292,7 @@ fn stability(data: &Data) -> Table {
             "max overlap mm",
             "mean overlap mm",
             "rms speed m/s",
+            "moved m",
             "drift m",
             "broke off",
         ],

@@ -191,7 +191,7 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
 
 fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
     const SCENE: &str = "stack/10";
-    let stands = |row: &&stability::Row| row.scene == SCENE && row.failed.is_none() && row.drift < 0.5;
+    let stands = |row: &&stability::Row| row.scene == SCENE && row.failed.is_none() && row.moved < 0.5;
     let of = |solver: &Solver| {
         let rows = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
         let mut points: Vec<_> = rows.map(|r| (r.ms_per_step, r.max_penetration.max(1e-7) * 1e3)).collect();

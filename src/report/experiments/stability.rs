@@ -29,7 +29,9 @@ pub struct Row {
     pub mean_penetration: f64,
     /// Root mean square of the bodies' speeds at the end, m/s.
     pub rms_speed: f64,
-    /// The farthest any body is from where it began, metres.
+    /// The farthest any body is from where it began, metres: what it has sunk, or fallen.
+    pub moved: f64,
+    /// The farthest any body is from where it was after half the time, metres.
     pub drift: f64,
     /// Why it broke off, if it did.
     pub failed: Option<String>,
@@ -107,9 +109,14 @@ fn stand(name: &'static str, solver: Solver, substeps: Substeps, seconds: f64) -
     };
     let mut world = simulate(&scene, settings)?;
     let begun = world.states();
+    let mut halfway = begun.clone();
     let mut samples_ms = Vec::new();
     let mut failed = None;
-    for _ in 0..(seconds / DT_SECS).round() as usize {
+    let steps = (seconds / DT_SECS).round() as usize;
+    for step in 0..steps {
+        if step == steps / 2 {
+            halfway = world.states();
+        }
         let start = Instant::now();
         if let Err(error) = world.step(DT_SECS) {
             failed = Some(error.to_string());
@@ -120,9 +127,10 @@ fn stand(name: &'static str, solver: Solver, substeps: Substeps, seconds: f64) -
     let states = world.states();
     let penetration = world.penetration();
     let square = |state: &BodyState| state.velocity.iter().map(|v| v * v).sum::<f64>();
-    let moved = |(a, b): (&BodyState, &BodyState)| {
+    let apart = |(a, b): (&BodyState, &BodyState)| {
         (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1])
     };
+    let farthest_from = |then: &[BodyState]| then.iter().zip(&states).map(apart).fold(0.0, f64::max);
     Ok(Row {
         scene: name,
         solver,
@@ -132,7 +140,8 @@ fn stand(name: &'static str, solver: Solver, substeps: Substeps, seconds: f64) -
         max_penetration: penetration.max,
         mean_penetration: penetration.mean,
         rms_speed: (states.iter().map(square).sum::<f64>() / states.len() as f64).sqrt(),
-        drift: begun.iter().zip(&states).map(moved).fold(0.0, f64::max),
+        moved: farthest_from(&begun),
+        drift: farthest_from(&halfway),
         failed,
     })
 }
