@@ -22,7 +22,7 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput
 use lamina2d::report::experiments::posed;
 use lamina2d::scene::Scene;
 use lamina2d::scene::mixes::Mix;
-use lamina2d::settings::{Broad, Integrator, Settings};
+use lamina2d::settings::{Broad, Integrator, Settings, Skips};
 use lamina2d::simulation::Simulation;
 use lamina2d::thesis::{ThesisIntegrator, ThesisWorld, Version};
 
@@ -225,7 +225,8 @@ fn broad_on_off(criterion: &mut Criterion, settled: &Settled) {
         let agreement = Agreement::default();
         group.throughput(Throughput::Elements(bodies));
         for (name, broad) in [("on", Broad::Auto), ("off", Broad::Off)] {
-            let settings = Settings { broad, ..Settings::default() };
+            // Which pairs are listed decides when manifolds are reused; all other skips keep every bit.
+            let settings = Settings { broad, skips: Skips::EXACT, ..Settings::default() };
             let case = Case { scene, settle_steps: SETTLE_STEPS, settings, touch: Touch::Always };
             case.bench(&mut group, settled, &format!("{scene}/{name}"), &agreement);
         }
