@@ -73,7 +73,19 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     low * 0.7..high * 1.4
 }
 
-fn log_log(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> anyhow::Result<String> {
+/// Where lines leave room for their names: they rise or fall.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Slope {
+    Up,
+    Down,
+}
+
+fn log_log(
+    title: &str,
+    [x_label, y_label]: [&str; 2],
+    series: &[Series],
+    slope: Slope,
+) -> anyhow::Result<String> {
     let xs = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.0)));
     let ys = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
     to_svg(|area| {
@@ -105,7 +117,10 @@ fn log_log(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> anyh
         plot(
             chart
                 .configure_series_labels()
-                .position(SeriesLabelPosition::UpperLeft)
+                .position(match slope {
+                    Slope::Up => SeriesLabelPosition::UpperLeft,
+                    Slope::Down => SeriesLabelPosition::UpperRight,
+                })
                 .background_style(WHITE.mix(0.85))
                 .border_style(BLACK.mix(0.3))
                 .draw(),
@@ -185,7 +200,7 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
         about: "Median time per step against the number of polygons, both logarithmic, with fitted exponents"
             .to_owned(),
         command: "lamina bench",
-        svg: log_log("Polygons, settled: time per step", "bodies", "ms per step", &series)?,
+        svg: log_log("Polygons, settled: time per step", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
 
@@ -198,7 +213,7 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let substeps = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
         let substeps: Vec<_> = substeps.map(|r| r.substeps.to_string()).collect();
-        Series { name: format!("{solver}, {} substeps", substeps.join(", ")), points }
+        Series { name: format!("{solver}: {} substeps", substeps.join(", ")), points }
     };
     let series: Vec<_> = Solver::ALL.iter().map(of).filter(|s| !s.points.is_empty()).collect();
     Ok(Plot {
@@ -209,9 +224,9 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
         command: "lamina report",
         svg: log_log(
             "Ten boxes at rest: error against run time",
-            "ms per step",
-            "largest overlap mm",
+            ["ms per step", "largest overlap mm"],
             &series,
+            Slope::Down,
         )?,
     })
 }
@@ -232,7 +247,7 @@ fn broad_on_off(data: &Data) -> anyhow::Result<Plot> {
         file: "broad_on_off.svg",
         about: "Median time per step with the broad phase on and off, 60 to 200 polygons".to_owned(),
         command: "lamina bench",
-        svg: log_log("Polygons: broad phase on and off", "bodies", "ms per step", &series)?,
+        svg: log_log("Polygons: broad phase on and off", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
 
