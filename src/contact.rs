@@ -10,7 +10,7 @@
 mod rest;
 
 use crate::column::Column;
-use crate::lanes::{LaneMask, Lanes, ROW, Real, set_lanes};
+use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real, set_lanes};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.
@@ -383,7 +383,6 @@ impl<R: Real> Manifolds<R> {
         geometry: [L; ROW],
         gap: [L; 4],
     ) {
-        const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
         let places = first..first + L::WIDTH;
         L::store_rows(geometry, &mut self.now.geometry.rows_mut()[places.clone()]);
         L::scatter_fours(gap, &mut self.now.gap.fours_mut()[places.clone()], &IN_ORDER);

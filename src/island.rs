@@ -133,6 +133,10 @@ impl<R: Real> Islands<R> {
     pub fn is_empty(&self) -> bool {
         self.rings == 0
     }
+    /// [`Islands::awake`] where somebody sleeps; `None` where all are to be reckoned with.
+    pub fn awake_beside_sleepers(&self) -> Option<&[bool]> {
+        (!self.is_empty()).then_some(&self.awake[..])
+    }
     /// Per slot, whether its body sleeps.
     pub fn asleep(&self) -> &[bool] {
         &self.asleep

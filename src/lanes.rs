@@ -12,6 +12,9 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign
 use bytemuck::Pod;
 use wide::{f32x4, f32x8, f32x16, f64x4, f64x8};
 
+/// 0, 1, 2, …: gathers and scatters of neighbouring rows.
+pub const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
 /// Elements per row of a [`RowTable`](crate::column::Column::rows): what one gather brings per body.
 pub const ROW: usize = 8;
 

@@ -280,7 +280,7 @@ impl<L: Lanes> World<L> {
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
-                self.solving.hand_back_rest(&mut self.narrow.manifolds, &self.motion);
+                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.wake_touched();
             }
         }
@@ -303,7 +303,7 @@ impl<L: Lanes> World<L> {
         if repaced || !seen.still {
             solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
         }
-        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
         let warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);

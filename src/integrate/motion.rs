@@ -6,7 +6,7 @@ use super::{BLOCK, Plan, angular_acceleration, block, matter, starts_in, vectors
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::force::acceleration;
-use crate::lanes::{Lanes, Real};
+use crate::lanes::{IN_ORDER, Lanes, Real};
 
 /// Columns of a step in progress: what bodies moved so far, and one substep's prediction.
 #[derive(Clone, Debug)]
@@ -191,6 +191,3 @@ pub(super) fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
 pub(super) fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
     L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
 }
-
-/// 0, 1, 2, …: gathers of neighbouring rows.
-pub(super) const IN_ORDER: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -19,7 +19,7 @@ use crate::body::{Bodies, Form};
 
 use crate::column::{Column, PAD};
 use crate::contact::{Code, Manifolds};
-use crate::lanes::{LaneMask, Lanes, ROW, Real};
+use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real};
 use crate::vec2::{Rot, Vec2};
 
 use polygon_polygon::Hull;
@@ -282,11 +282,10 @@ impl<R: Real> Narrow<R> {
             return;
         }
         let columns = columns.map(Column::lanes::<L>);
-        let index: [u32; 16] = std::array::from_fn(|lane| lane as u32);
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
             let [vx, vy, radius] = columns.map(|column| column[at]);
             let rows = &mut self.speeds.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
-            L::scatter_fours([vx, vy, radius, L::zero()], rows, &index);
+            L::scatter_fours([vx, vy, radius, L::zero()], rows, &IN_ORDER);
         }
     }
 

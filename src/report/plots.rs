@@ -208,11 +208,11 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
     const SCENE: &str = "stack/10";
     let stands = |row: &&stability::Row| row.scene == SCENE && row.failed.is_none() && row.moved < 0.5;
     let of = |solver: &Solver| {
-        let rows = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
-        let mut points: Vec<_> = rows.map(|r| (r.ms_per_step, r.max_penetration.max(1e-7) * 1e3)).collect();
+        let rows: Vec<_> = data.stability.iter().filter(stands).filter(|row| row.solver == *solver).collect();
+        let overlap_mm = |row: &stability::Row| row.max_penetration.max(1e-7) * 1e3;
+        let mut points: Vec<_> = rows.iter().map(|row| (row.ms_per_step, overlap_mm(row))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let substeps = data.stability.iter().filter(stands).filter(|row| row.solver == *solver);
-        let substeps: Vec<_> = substeps.map(|r| r.substeps.to_string()).collect();
+        let substeps: Vec<_> = rows.iter().map(|row| row.substeps.to_string()).collect();
         Series { name: format!("{solver}: {} substeps", substeps.join(", ")), points }
     };
     let series: Vec<_> = Solver::ALL.iter().map(of).filter(|s| !s.points.is_empty()).collect();

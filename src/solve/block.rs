@@ -30,6 +30,26 @@ pub(super) fn answer<L: Lanes, const POINTS: usize>(
     std::array::from_fn(|k| held[k] + cross * (masses[POINTS - 1 - k] * held[POINTS - 1 - k]))
 }
 
+/// Impulses over their masses with which points that carry something neither close nor part; `per_sec` is 1/h.
+#[inline(always)]
+pub(super) fn relaxed<L: Lanes, const POINTS: usize>(
+    c: &Constraint<L, POINTS>,
+    normals: &Normals<L>,
+    per_sec: L,
+) -> [L; POINTS] {
+    let (zero, cross) = (L::zero(), cross(c, normals));
+    let masses = c.points.map(|point| point.mass);
+    let held = c.points.map(|point| point.held);
+    let answer = answer(cross, masses, held);
+    let wanted: [L; POINTS] = std::array::from_fn(|k| {
+        let point = &c.points[k];
+        // A point that carried nothing may go on closing its gap.
+        let closing = zero.max(point.separation) * per_sec;
+        normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
+    });
+    non_negative(cross, masses, wanted)
+}
+
 /// y ≥ 0 with K·x + b ≥ 0 and y·(K·x + b) = 0, where x = m·y are impulses, K has 1/m on its diagonal and
 /// `cross` beside it: impulses, over their masses, that stop the points from approaching at −b.
 ///

@@ -199,3 +199,16 @@ fn lanes<L: Lanes, T>(items: &[T], of: impl Fn(&T) -> L::Elem) -> L {
     }
     L::load(&values)
 }
+
+/// One number of each joint; 0 where there is none.
+fn number<L: Lanes>(joints: &[Option<&Joint>], of: fn(&Joint) -> f64) -> L {
+    lanes(joints, |joint| L::Elem::from_f64(joint.map_or(0.0, of)))
+}
+
+/// The anchors in the frames of A and B, metres.
+fn anchors<L: Lanes>(joints: &[Option<&Joint>]) -> [Vec2<L>; 2] {
+    [
+        Vec2::new(number(joints, |j| j.anchors_body[0][0]), number(joints, |j| j.anchors_body[0][1])),
+        Vec2::new(number(joints, |j| j.anchors_body[1][0]), number(joints, |j| j.anchors_body[1][1])),
+    ]
+}

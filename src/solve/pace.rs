@@ -136,10 +136,6 @@ impl<R: Real> Paces<R> {
     pub fn index(&self) -> &Column<R> {
         &self.index
     }
-    /// Substeps of the body in a slot, where islands are paced.
-    pub fn of_body(&self, slot: usize) -> Option<u32> {
-        self.of_slot.get(slot).copied()
-    }
     /// The pace of a pair that touches. What nothing moves has the first.
     pub fn of_pair(&self, slots: [u32; 2]) -> usize {
         if self.count() == 1 {
@@ -160,11 +156,11 @@ impl<R: Real> Paces<R> {
     }
 
     /// A visitor that reads the loads.
-    pub fn reading(&mut self, goal: &Goal) -> Loads<'_> {
+    pub fn reading(&mut self) -> Loads<'_> {
         self.load.swap(0, 1);
         self.load[0].clear();
         self.load[0].resize(self.of_slot.len(), 0.0);
-        Loads { load: &mut self.load[0], substeps: &self.of_slot, base: goal.base }
+        Loads { load: &mut self.load[0], substeps: &self.of_slot }
     }
 
     /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join.
@@ -322,7 +318,6 @@ fn aimed(goal: &Goal, island: &Island) -> u32 {
 pub struct Loads<'a> {
     load: &'a mut [f64],
     substeps: &'a [u32],
-    base: u32,
 }
 
 impl<L: Lanes> Visit<L> for Loads<'_> {
@@ -331,8 +326,7 @@ impl<L: Lanes> Visit<L> for Loads<'_> {
         for (lane, held) in held.iter().enumerate().take(L::WIDTH) {
             for slot in [ends.a[lane], ends.b[lane]].map(|slot| slot as usize) {
                 // Bodies come and go between a step and the next.
-                if let Some(load) = self.load.get_mut(slot) {
-                    let substeps = self.substeps.get(slot).map_or(self.base, |&n| n);
+                if let (Some(load), Some(&substeps)) = (self.load.get_mut(slot), self.substeps.get(slot)) {
                     *load = load.max(held.to_f64() * f64::from(substeps));
                 }
             }

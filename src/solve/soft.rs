@@ -14,7 +14,7 @@
 //! * **Gaps.** A point apart by s > 0 may close by s in a substep, no more. The relaxation leaves points alone that
 //!   carried nothing in the push.
 
-use super::block::{answer, cross, non_negative};
+use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
 use crate::lanes::{LaneMask, Lanes};
@@ -126,22 +126,11 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Relax<'_, L, FRICTION> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
-        let zero = L::zero();
         let mut normals = Normals::begin(c, &a, &b);
-        let cross = cross(c, &normals);
-        let masses = c.points.map(|point| point.mass);
-        let held = c.points.map(|point| point.held);
-        let answer = answer(cross, masses, held);
-        let wanted: [L; POINTS] = std::array::from_fn(|k| {
-            let point = &c.points[k];
-            // A point that carried nothing may go on closing its gap.
-            let closing = zero.max(point.separation) * self.per_sec;
-            normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
-        });
-        let next = non_negative(cross, masses, wanted);
-        for k in 0..POINTS {
-            normals.push(c, k, masses[k] * (next[k] - held[k]));
-            c.points[k].held = next[k];
+        let next = relaxed(c, &normals, self.per_sec);
+        for (k, next) in next.into_iter().enumerate() {
+            normals.push(c, k, c.points[k].mass * (next - c.points[k].held));
+            c.points[k].held = next;
         }
         normals.end(c, &mut a, &mut b);
         if FRICTION {

@@ -110,12 +110,12 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) -> bool {
         if self.paces.looks() {
-            self.stream.visit(&mut self.paces.reading(goal));
+            self.stream.visit(&mut self.paces.reading());
         }
         let ends = joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
         let changed = self.paces.decide(goal, bodies, manifolds, ends, &motion.runs);
         if changed {
-            self.hand_back_rest(manifolds, motion);
+            self.hand_back(manifolds, motion);
             self.paces.scale_impulses(bodies, manifolds);
             motion.paces.clone_from(self.paces.index());
         }
@@ -190,19 +190,10 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// After [`Solving::hand_back_chosen`]: those of all other pairs.
-    pub fn hand_back_rest(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
-        if self.latest != Latest::InPairs {
-            self.stream.end_where(false, manifolds, self.latest.yet_to_follow(motion));
-            self.latest = Latest::InPairs;
-        }
-    }
-
-    /// Hands gaps and impulses back to the pairs, before manifolds are found anew.
+    /// Hands gaps and impulses back to the pairs, those of [`Solving::hand_back_chosen`] left out: they have been.
     pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
         if self.latest != Latest::InPairs {
-            self.stream.end(manifolds, self.latest.yet_to_follow(motion));
-            self.stream.age();
+            self.stream.end_where(false, manifolds, self.latest.yet_to_follow(motion));
             self.latest = Latest::InPairs;
         }
     }
@@ -379,11 +370,12 @@ impl<L: Lanes> Solving<L> {
                 bounces: &mut self.bounces,
             });
         }
-        self.latest = match task.solver {
-            Solver::Avbd => Latest::InPairs,
-            _ if settled => Latest::InConstraints,
-            Solver::Xpbd => Latest::InConstraints,
-            Solver::Soft | Solver::Pgs | Solver::Impulse => Latest::BeforeDisplacements,
+        self.latest = if task.solver == Solver::Avbd {
+            Latest::InPairs
+        } else if settled {
+            Latest::InConstraints
+        } else {
+            Latest::BeforeDisplacements
         };
     }
 
@@ -410,7 +402,7 @@ impl<L: Lanes> Solving<L> {
     ) -> Manifolds<L::Elem> {
         let mut manifolds = manifolds.clone();
         if self.latest != Latest::InPairs {
-            self.stream.clone().end(&mut manifolds, self.latest.yet_to_follow(motion));
+            self.stream.clone().end_where(false, &mut manifolds, self.latest.yet_to_follow(motion));
         }
         manifolds
     }

@@ -5,7 +5,7 @@
 //! | [`Stream::cut`] when contacts come or go | colours | batches |
 //! | [`Stream::begin`] | manifolds looked at, masses | constraints, warm start per body |
 //! | [`Stream::visit`] per pass | constraints, rows | constraints, rows |
-//! | [`Stream::end`] before manifolds are found anew | constraints, last displacements | gaps and impulses of pairs |
+//! | [`Stream::end_where`] before manifolds are found anew | constraints, last displacements | gaps and impulses of pairs |
 //!
 //! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
 //! changes a row and every loop over lanes is of fixed length.
@@ -317,13 +317,9 @@ impl<L: Lanes> Stream<L> {
         }
     }
 
-    /// Hands gaps and impulses back to the pairs; `moved` has the rows x, y, angle of the last substep's
-    /// displacement per slot, by which the gaps still have to change; `None` where they are up to date.
-    pub fn end(&mut self, manifolds: &mut Manifolds<L::Elem>, moved: Option<&[[L::Elem; 4]]>) {
-        self.visit(&mut Store { manifolds, moved });
-    }
-
-    /// [`Stream::end`] for the batches with a touched place, or for all others.
+    /// Hands gaps and impulses of the batches with a touched place, or of all others, back to the pairs; `moved` has
+    /// the rows x, y, angle of the last substep's displacement per slot, by which the gaps still have to change;
+    /// `None` where they are up to date.
     pub fn end_where(
         &mut self,
         touched: bool,

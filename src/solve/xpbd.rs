@@ -19,7 +19,7 @@
 //! * **Impulses.** λ/(h·share) is what friction in [`Settle`] is bounded by, and what a report shows.
 
 use super::Task;
-use super::block::{answer, cross, non_negative};
+use super::block::{cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
 use crate::lanes::{LaneMask, Lanes};
@@ -149,22 +149,13 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
         }
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
         let mut normals = Normals::begin(c, &a, &b);
-        let cross = cross(c, &normals);
-        let masses = c.points.map(|point| point.mass);
-        let answer = answer(cross, masses, held);
-        let wanted: [L; POINTS] = std::array::from_fn(|k| {
-            let point = &c.points[k];
-            // A point that carried nothing may go on closing its gap.
-            let closing = zero.max(point.separation) * self.per_sec;
-            normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
-        });
-        let next = non_negative(cross, masses, wanted);
+        let next = relaxed(c, &normals, self.per_sec);
         // Lanes that carry nothing are as if visited alone.
         let carries = held.iter().fold(zero, |sum, held| sum + *held);
         let carries = zero.lt(carries);
         let next: [L; POINTS] = std::array::from_fn(|k| L::select(carries, next[k], held[k]));
         for k in 0..POINTS {
-            normals.push(c, k, masses[k] * (next[k] - held[k]));
+            normals.push(c, k, c.points[k].mass * (next[k] - held[k]));
             c.points[k].held = next[k];
         }
         normals.end(c, &mut a, &mut b);

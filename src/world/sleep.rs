@@ -43,7 +43,7 @@ impl<L: Lanes> World<L> {
             return;
         }
         self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
-        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        let awake = self.islands.awake_beside_sleepers();
         match awake {
             None => self.motion.go_over_all(&self.bodies),
             Some(awake) => self.motion.go_over_awake(&self.bodies, awake, self.islands.asleep()),
@@ -58,7 +58,7 @@ impl<L: Lanes> World<L> {
         if !std::mem::take(&mut self.regrouped) {
             return;
         }
-        let awake = (!self.islands.is_empty()).then_some(self.islands.awake());
+        let awake = self.islands.awake_beside_sleepers();
         self.narrow.manifolds.regroup(awake);
     }
 

@@ -15,9 +15,9 @@
 //! nothing cancels however long the arms. (det by its entries lost all digits of f32 at arms of 1000 radii.)
 
 use super::row::{Numbers, Row};
-use super::{Linkage, Pose, Stiffness, Swing, lanes, turn};
+use super::{Linkage, Pose, Stiffness, Swing, anchors, lanes, number, turn};
 use crate::joint::{Held, Joint};
-use crate::lanes::{Lanes, Real};
+use crate::lanes::Lanes;
 use crate::solve::constraint::{Side, inverse};
 use crate::vec2::{Rot, Vec2};
 
@@ -96,15 +96,10 @@ impl<L: Lanes> Linkage<L> for Pin<L> {
         held: &[Held<L::Elem>],
         inv_inertia: [L; 2],
     ) -> Self {
-        let of =
-            |value: fn(&Joint) -> f64| lanes(joints, |joint| L::Elem::from_f64(joint.map_or(0.0, value)));
         Self {
-            anchors: [
-                Vec2::new(of(|j| j.anchors_body[0][0]), of(|j| j.anchors_body[0][1])),
-                Vec2::new(of(|j| j.anchors_body[1][0]), of(|j| j.anchors_body[1][1])),
-            ],
+            anchors: anchors(joints),
             inv_inertia,
-            reference: Rot { c: of(|j| j.reference[0]), s: of(|j| j.reference[1]) },
+            reference: Rot { c: number(joints, |j| j.reference[0]), s: number(joints, |j| j.reference[1]) },
             arms: [Vec2::zero(); 2],
             gap: Vec2::zero(),
             angle: lanes(held, |h| h.angle),

@@ -10,9 +10,9 @@
 //! and goes into the row's velocity: a pendulum's rod is as long after a substep as before, not by (h·u)²/2|d| longer.
 
 use super::row::{Numbers, Row};
-use super::{Linkage, Pose, Stiffness, Swing, lanes, turn};
+use super::{Linkage, Pose, Stiffness, Swing, anchors, turn};
 use crate::joint::{Held, Joint};
-use crate::lanes::{Lanes, Real};
+use crate::lanes::Lanes;
 use crate::solve::constraint::{Side, inverse};
 use crate::vec2::Vec2;
 
@@ -73,13 +73,8 @@ impl<L: Lanes> Linkage<L> for Rod<L> {
         held: &[Held<L::Elem>],
         inv_inertia: [L; 2],
     ) -> Self {
-        let of =
-            |value: fn(&Joint) -> f64| lanes(joints, |joint| L::Elem::from_f64(joint.map_or(0.0, value)));
         Self {
-            anchors: [
-                Vec2::new(of(|j| j.anchors_body[0][0]), of(|j| j.anchors_body[0][1])),
-                Vec2::new(of(|j| j.anchors_body[1][0]), of(|j| j.anchors_body[1][1])),
-            ],
+            anchors: anchors(joints),
             inv_inertia,
             arms: [Vec2::zero(); 2],
             apart: Vec2::zero(),
