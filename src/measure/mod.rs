@@ -16,7 +16,7 @@ use crate::settings::Skip;
 use crate::solve::Traits;
 
 pub use overlap::{Outline, Penetration, penetration};
-pub use state::{Invariants, first_non_finite, invariants, non_finite_in, state_hash};
+pub use state::{Invariants, first_non_finite, hash_of, invariants, non_finite_in, state_hash};
 
 /// The stages of a step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

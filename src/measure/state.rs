@@ -10,18 +10,20 @@ use crate::force::Forces;
 use crate::lanes::{LaneMask, Lanes, Real};
 
 /// xxh3 (64 bits) over x, y, c, s, vx, vy, w of every living body in slot order, as `f64` bits.
+pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
+    let columns = [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
+    hash_of(columns.into_iter().flat_map(|column| bodies.slots().map(|slot| column[slot].to_f64())))
+}
+
+/// xxh3 (64 bits) over the bits of numbers, in their order.
 ///
 /// −0 counts as 0 and every NaN as one: their bits differ between machines that agree in all values.
-pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
+pub fn hash_of(values: impl Iterator<Item = f64>) -> u64 {
     let mut hasher = Xxh3Default::new();
-    let columns = [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
-    for column in columns {
-        for slot in bodies.slots() {
-            let value = column[slot].to_f64();
-            let canonical = if value.is_nan() { f64::NAN } else { value + 0.0 };
-            let bits = if value.is_nan() { 0x7ff8_0000_0000_0000 } else { canonical.to_bits() };
-            hasher.update(&bits.to_le_bytes());
-        }
+    for value in values {
+        let canonical = if value.is_nan() { f64::NAN } else { value + 0.0 };
+        let bits = if value.is_nan() { 0x7ff8_0000_0000_0000 } else { canonical.to_bits() };
+        hasher.update(&bits.to_le_bytes());
     }
     hasher.digest()
 }
