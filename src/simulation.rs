@@ -56,6 +56,12 @@ pub trait Simulation: Send {
     fn penetration(&self) -> Penetration {
         measure::penetration(&self.outlines())
     }
+    /// The error against the closed form of the scene this world was made of, after `t_secs`; see
+    /// [`measure::case_error`].
+    fn case_error(&self, scene: &Scene, t_secs: f64) -> Option<f64> {
+        let states = self.states();
+        measure::case_error(scene, t_secs, |body| (states[body].position, states[body].rotation))
+    }
     /// The candidate pairs of the last step.
     fn pairs(&self) -> Vec<[u32; 2]>;
     /// The method `auto` stands for here.

@@ -191,6 +191,7 @@ fn describe(
             "potential_energy": sums.potential_energy,
             "momentum": sums.momentum,
             "angular_momentum": sums.angular_momentum,
+            "case": world.case_error(scene, steps as f64 * settings.dt_secs),
         },
         "hash": format!("{:016x}", world.hash()),
     });

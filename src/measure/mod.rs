@@ -1,5 +1,6 @@
 //! What is measured of a world: stage times, counts, energy and momentum, penetration, state hash.
 
+mod case;
 mod overlap;
 mod state;
 
@@ -15,6 +16,7 @@ use crate::lanes::Real;
 use crate::settings::Skip;
 use crate::solve::Traits;
 
+pub use case::case_error;
 pub use overlap::{Outline, Penetration, penetration};
 pub use state::{Invariants, first_non_finite, hash_of, invariants, non_finite_in, state_hash};
 

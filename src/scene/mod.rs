@@ -2,8 +2,9 @@
 //!
 //! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
-//! [`file`](mod@file) reads them from TOML.
+//! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be.
 
+pub mod cases;
 mod driven;
 pub mod file;
 pub mod jointed;

@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{driven, jointed, stacks};
+use super::{cases, driven, jointed, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -281,6 +281,55 @@ pub const SCENES: &[SceneInfo] = &[
         default: 1,
         about: "a disc on a rod of 1 m, let go level",
         build: |_, _| jointed::pendulum(),
+    },
+    SceneInfo {
+        name: "spin",
+        takes: Takes::Nothing,
+        default: 3,
+        about: "bars at 1, 10 and 100 rad/s, free: their attitudes are known",
+        build: |_, _| cases::spin(),
+    },
+    SceneInfo {
+        name: "slide",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a block at 5 m/s slides to a stop on a level floor",
+        build: |_, _| cases::slide(),
+    },
+    SceneInfo {
+        name: "incline",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a block slides down a slope of 30°",
+        build: |_, _| cases::incline(),
+    },
+    SceneInfo {
+        name: "roll",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a disc rolls down a slope of 20°",
+        build: |_, _| cases::roll(),
+    },
+    SceneInfo {
+        name: "slide_to_roll",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a disc at 6 m/s slides until it rolls",
+        build: |_, _| cases::slide_to_roll(),
+    },
+    SceneInfo {
+        name: "bounce",
+        takes: Takes::Nothing,
+        default: 1,
+        about: "a disc dropped from 2 m bounces four times",
+        build: |_, _| cases::bounce(),
+    },
+    SceneInfo {
+        name: "rod_hit",
+        takes: Takes::Nothing,
+        default: 2,
+        about: "a disc hits a free rod off its middle",
+        build: |_, _| cases::rod_hit(),
     },
 ];
 

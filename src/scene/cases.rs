@@ -1,0 +1,283 @@
+//! Scenes whose motion has a closed form, and that form beside each: what the error of any engine is measured against.
+//!
+//! [`exact`] knows nothing of an engine: it reads the scene's own numbers and gives each movable body's pose at a
+//! time, in `f64`. The letters are those of the cases' usual names: A smooth motion, B contact.
+//!
+//! | scene | case | closed form |
+//! |---|---|---|
+//! | `free_flight` | A1 | x₀ + v₀t + ½gt² |
+//! | `spin` | A16 | θ₀ + ωt |
+//! | `pendulum` | A9 | θ″ = −(g/L) sin θ, integrated here by Runge–Kutta 4 in steps of 10 µs and held to T = 4√(L/g)·K(sin ½θ₀) by a test |
+//! | `slide` | B1 | stops after v₀²/2μg |
+//! | `incline` | B3 | ½g(sin θ − μ cos θ)t² |
+//! | `roll` | B4 | ⅓g sin θ·t², angle s/R |
+//! | `slide_to_roll` | B5 | until v₀/3μg slides, then rolls at ⅔v₀ |
+//! | `bounce` | B10 | parabolas, each e times as fast as the last |
+//! | `head_on` | B12 | momentum and Newton's law of restitution |
+//! | `rod_hit` | B14 | J = (1 + e)v / (1/m₁ + 1/m₂ + d²/I) |
+
+use glam::DVec2;
+
+use super::named::scene;
+use super::{BodyKind, BodySpec, Scene, ShapeSpec};
+use crate::force::Forces;
+use crate::vec2::Rot;
+
+/// Where a body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exact {
+    /// Its number in the scene.
+    pub body: usize,
+    /// Centroid, metres.
+    pub position: [f64; 2],
+    /// Attitude, rad, counter-clockwise and not wrapped.
+    pub angle: f64,
+}
+
+/// A case's closed form: one pose per movable body of the scene, after so many seconds.
+type Form = fn(&Scene, f64) -> Vec<Exact>;
+
+const FORMS: &[(&str, Form)] = &[
+    ("free_flight", ballistic),
+    ("spin", ballistic),
+    ("pendulum", swing),
+    ("slide", slide_at),
+    ("incline", incline_at),
+    ("roll", roll_at),
+    ("slide_to_roll", slide_to_roll_at),
+    ("bounce", bounce_at),
+    ("head_on", head_on_at),
+    ("rod_hit", rod_hit_at),
+];
+
+/// Where every movable body of a scene is after `t_secs`; `None` where no closed form is known. Goes by the scene's
+/// name, so the scene must be as [`super::by_name`] made it.
+pub fn exact(scene: &Scene, t_secs: f64) -> Option<Vec<Exact>> {
+    let base = scene.name.split('/').next().unwrap_or_default();
+    let form = FORMS.iter().find(|(name, _)| *name == base)?.1;
+    Some(form(scene, t_secs))
+}
+
+/// m/s², downward.
+fn gravity(scene: &Scene) -> f64 {
+    scene.forces.gravity.map_or(0.0, |g| -g[1])
+}
+
+fn movable(scene: &Scene) -> impl Iterator<Item = (usize, &BodySpec)> {
+    scene.bodies.iter().enumerate().filter(|(_, b)| b.kind != BodyKind::Static)
+}
+
+/// A pose `along` an axis of the body's beginning.
+fn moved(body: usize, spec: &BodySpec, by: DVec2, turn: f64) -> Exact {
+    Exact { body, position: (DVec2::from(spec.position) + by).to_array(), angle: spec.angle + turn }
+}
+
+fn ballistic(scene: &Scene, t: f64) -> Vec<Exact> {
+    let fall = DVec2::new(0.0, -0.5 * gravity(scene) * t * t);
+    let at =
+        |(k, b): (usize, &BodySpec)| moved(k, b, DVec2::from(b.velocity) * t + fall, b.angular_velocity * t);
+    movable(scene).map(at).collect()
+}
+
+/// Three bars far apart, without gravity, at 1, 10 and 100 rad/s.
+pub(super) fn spin() -> Scene {
+    let bars = [1.0, 10.0, 100.0]
+        .into_iter()
+        .enumerate()
+        .map(|(k, w)| BodySpec::new(ShapeSpec::Box([0.5, 0.1]), [4.0 * k as f64, 0.0]).moving([0.0; 2], w));
+    scene("bars that spin freely", bars.collect(), Forces::default(), 600)
+}
+
+/// Steps of the pendulum's reference, seconds: its error is below 1e-12 rad over 10 s.
+const FINE_SECS: f64 = 1e-5;
+
+fn swing(scene: &Scene, t: f64) -> Vec<Exact> {
+    let (pivot, bob) = (DVec2::from(scene.bodies[0].position), DVec2::from(scene.bodies[1].position));
+    let arm = bob - pivot;
+    let k = gravity(scene) / arm.length();
+    let steps = (t / FINE_SECS).ceil().max(1.0);
+    let h = t / steps;
+    // From the lowest point, counter-clockwise.
+    let (mut angle, mut speed) = (arm.x.atan2(-arm.y), 0.0);
+    for _ in 0..steps as u64 {
+        let rate = |angle: f64| -k * angle.sin();
+        let (a1, s1) = (speed, rate(angle));
+        let (a2, s2) = (speed + 0.5 * h * s1, rate(angle + 0.5 * h * a1));
+        let (a3, s3) = (speed + 0.5 * h * s2, rate(angle + 0.5 * h * a2));
+        let (a4, s4) = (speed + h * s3, rate(angle + h * a3));
+        angle += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
+        speed += h / 6.0 * (s1 + 2.0 * (s2 + s3) + s4);
+    }
+    let at = pivot + arm.length() * DVec2::new(angle.sin(), -angle.cos());
+    // The rod ends in the disc's centre: nothing turns it.
+    vec![moved(1, &scene.bodies[1], at - bob, 0.0)]
+}
+
+/// A static floor with its top at height 0.
+fn floor(friction: f64, restitution: f64) -> BodySpec {
+    BodySpec::new(ShapeSpec::Box([50.0, 0.5]), [0.0, -0.5]).surface(restitution, friction).fixed()
+}
+
+/// A flat block sent over a level floor at 5 m/s with μ = 0.5.
+pub(super) fn slide() -> Scene {
+    let block =
+        BodySpec::new(ShapeSpec::Box([0.5, 0.25]), [0.0, 0.25]).surface(0.0, 0.5).moving([5.0, 0.0], 0.0);
+    scene("a block slides to a stop", vec![floor(0.5, 0.0), block], Forces::gravity(), 120)
+}
+
+fn slide_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let block = &scene.bodies[1];
+    let slowing = block.friction * gravity(scene);
+    let t = t.min(block.velocity[0] / slowing);
+    vec![moved(1, block, DVec2::new(block.velocity[0] * t - 0.5 * slowing * t * t, 0.0), 0.0)]
+}
+
+/// A body on a slope of `angle` rad: bodies are the slope, whose surface passes through the origin, and the body, which
+/// touches it there from above, `height` metres from its centre.
+fn on_slope(about: &str, shape: ShapeSpec, height: f64, angle: f64, friction: f64, steps: u64) -> Scene {
+    let rot = Rot::from_angle(angle);
+    let normal = DVec2::new(-rot.s, rot.c);
+    let slope = BodySpec::new(ShapeSpec::Box([60.0, 0.5]), (normal * -0.5).to_array());
+    let body = BodySpec::new(shape, (normal * height).to_array());
+    let bodies =
+        vec![slope.turned(angle).surface(0.0, friction).fixed(), body.turned(angle).surface(0.0, friction)];
+    scene(about, bodies, Forces::gravity(), steps)
+}
+
+/// A flat block let go on a slope of 30° with μ = 0.3.
+pub(super) fn incline() -> Scene {
+    let (about, angle) = ("a block slides down a slope", 30f64.to_radians());
+    on_slope(about, ShapeSpec::Box([0.5, 0.25]), 0.25, angle, 0.3, 180)
+}
+
+/// Down the slope that body 0 is, per metre of way.
+fn downhill(scene: &Scene) -> (Rot<f64>, DVec2) {
+    let rot = Rot::from_angle(scene.bodies[0].angle);
+    (rot, DVec2::new(-rot.c, -rot.s))
+}
+
+fn incline_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let (rot, down) = downhill(scene);
+    let block = &scene.bodies[1];
+    let way = 0.5 * gravity(scene) * (rot.s - block.friction * rot.c) * t * t;
+    vec![moved(1, block, down * way, 0.0)]
+}
+
+/// A disc let go on a slope of 20° with μ = 0.5, enough for it to roll.
+pub(super) fn roll() -> Scene {
+    let (about, angle) = ("a disc rolls down a slope", 20f64.to_radians());
+    on_slope(about, ShapeSpec::Circle(0.5), 0.5, angle, 0.5, 180)
+}
+
+fn radius(spec: &BodySpec) -> f64 {
+    spec.shape.build().map_or(f64::NAN, |shape| shape.bounding_radius())
+}
+
+fn roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let (rot, down) = downhill(scene);
+    let disc = &scene.bodies[1];
+    let way = gravity(scene) * rot.s / 3.0 * t * t;
+    // Downhill is to the left: it turns counter-clockwise.
+    vec![moved(1, disc, down * way, way / radius(disc))]
+}
+
+/// A disc sent over a level floor at 6 m/s without spin, μ = 0.3.
+pub(super) fn slide_to_roll() -> Scene {
+    let disc = BodySpec::new(ShapeSpec::Circle(0.5), [0.0, 0.5]).surface(0.0, 0.3).moving([6.0, 0.0], 0.0);
+    scene("a disc slides until it rolls", vec![floor(0.3, 0.0), disc], Forces::gravity(), 120)
+}
+
+fn slide_to_roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let disc = &scene.bodies[1];
+    let (v, slowing) = (disc.velocity[0], disc.friction * gravity(scene));
+    let sliding = t.min(v / (3.0 * slowing));
+    let rolling = t - sliding;
+    let way = v * sliding - 0.5 * slowing * sliding * sliding + 2.0 / 3.0 * v * rolling;
+    // α = 2μg/R while it slides, ω = v/R once it rolls; clockwise.
+    let turn = slowing * sliding * sliding + 2.0 / 3.0 * v * rolling;
+    vec![moved(1, disc, DVec2::new(way, 0.0), -turn / radius(disc))]
+}
+
+/// A disc dropped from 2 m with e = 0.8: four bounces.
+pub(super) fn bounce() -> Scene {
+    let disc = BodySpec::new(ShapeSpec::Circle(0.25), [0.0, 2.25]).surface(0.8, 0.0);
+    scene("a disc bounces", vec![floor(0.0, 0.8), disc], Forces::gravity(), 240)
+}
+
+fn bounce_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let disc = &scene.bodies[1];
+    let (g, drop) = (gravity(scene), disc.position[1] - radius(disc));
+    let first = (2.0 * drop / g).sqrt();
+    let (mut speed, mut left) = (g * first, t - first);
+    let mut height = drop - 0.5 * g * t * t;
+    while left > 0.0 {
+        speed *= disc.restitution;
+        let flight = 2.0 * speed / g;
+        if flight < 1e-6 {
+            height = 0.0;
+            break;
+        }
+        height = speed * left - 0.5 * g * left * left;
+        left -= flight;
+    }
+    vec![moved(1, disc, DVec2::new(0.0, height - drop), 0.0)]
+}
+
+/// Half the width of a body as it stands.
+fn half_width(spec: &BodySpec) -> f64 {
+    match &spec.shape {
+        ShapeSpec::Box([x, _]) => *x,
+        _ => radius(spec),
+    }
+}
+
+fn mass(spec: &BodySpec) -> f64 {
+    spec.mass.unwrap_or(f64::NAN)
+}
+
+fn head_on_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let meet = |(k, pair): (usize, &[BodySpec])| {
+        let ([a, b], [va, vb]) = ([&pair[0], &pair[1]], [pair[0].velocity[0], pair[1].velocity[0]]);
+        let gap = b.position[0] - a.position[0] - half_width(a) - half_width(b);
+        let before = t.min(gap / (va - vb));
+        let impulse = (1.0 + a.restitution) * (va - vb) / (1.0 / mass(a) + 1.0 / mass(b));
+        let after = t - before;
+        let way = |spec, v: f64, change: f64| v * before + (v + change / mass(spec)) * after;
+        [
+            moved(2 * k, a, DVec2::new(way(a, va, -impulse), 0.0), 0.0),
+            moved(2 * k + 1, b, DVec2::new(way(b, vb, impulse), 0.0), 0.0),
+        ]
+    };
+    scene.bodies.chunks_exact(2).enumerate().flat_map(meet).collect()
+}
+
+/// A disc of 1 kg at 2 m/s hits an upright rod of 2 kg 0.6 m above its middle, e = 1, without gravity.
+pub(super) fn rod_hit() -> Scene {
+    let disc = BodySpec::new(ShapeSpec::Circle(0.2), [-1.3, 0.6])
+        .mass(1.0)
+        .surface(1.0, 0.0)
+        .moving([2.0, 0.0], 0.0);
+    let rod = BodySpec::new(ShapeSpec::Box([0.1, 1.0]), [0.0; 2]).mass(2.0).surface(1.0, 0.0);
+    scene("a disc hits a free rod off its middle", vec![disc, rod], Forces::default(), 60)
+}
+
+fn rod_hit_at(scene: &Scene, t: f64) -> Vec<Exact> {
+    let (disc, rod) = (&scene.bodies[0], &scene.bodies[1]);
+    let [half_x, half_y] = match rod.shape {
+        ShapeSpec::Box(half) => half,
+        _ => [f64::NAN; 2],
+    };
+    let inertia = mass(rod) / 3.0 * (half_x * half_x + half_y * half_y);
+    let arm = disc.position[1] - rod.position[1];
+    let v = disc.velocity[0];
+    let gap = rod.position[0] - disc.position[0] - half_x - radius(disc);
+    let impulse = (1.0 + rod.restitution) * v / (1.0 / mass(disc) + 1.0 / mass(rod) + arm * arm / inertia);
+    let before = t.min(gap / v);
+    let after = t - before;
+    let disc_way = v * before + (v - impulse / mass(disc)) * after;
+    // A push to the right above the middle turns it clockwise.
+    vec![
+        moved(0, disc, DVec2::new(disc_way, 0.0), 0.0),
+        moved(1, rod, DVec2::new(impulse / mass(rod) * after, 0.0), -impulse * arm / inertia * after),
+    ]
+}
