@@ -9,7 +9,7 @@ use std::process::Command;
 fn c_build() -> Option<(String, String)> {
     let release = std::env::var("PROFILE").is_ok_and(|profile| profile == "release");
     let mut build = cc::Build::new();
-    build.flag("-std=c17").flag("-ffp-contract=off").opt_level(if release { 2 } else { 0 });
+    build.flag("-std=c17").flag("-ffp-contract=off").debug(!release).opt_level(if release { 2 } else { 0 });
     if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "x86_64") {
         build.define("BOX2D_AVX2", None).flag_if_supported("-mavx2");
     }

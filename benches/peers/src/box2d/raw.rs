@@ -194,11 +194,8 @@ impl World {
         };
         self.bodies.push(pair);
         if new.kind == Kind::Dynamic {
-            let mass = ffi::b2MassData {
-                mass: new.mass,
-                center: vec([0.0; 2]),
-                rotationalInertia: new.inertia,
-            };
+            let mass =
+                ffi::b2MassData { mass: new.mass, center: vec([0.0; 2]), rotationalInertia: new.inertia };
             // SAFETY: the body was made above, in this world.
             unsafe { ffi::b2Body_SetMassData(pair.0, mass) };
         }
@@ -292,12 +289,7 @@ impl World {
                 ffi::b2Body_GetAngularVelocity(id),
             )
         };
-        State {
-            position: [p.x, p.y],
-            rotation: [q.c, q.s],
-            velocity: [v.x, v.y],
-            angular_velocity: w,
-        }
+        State { position: [p.x, p.y], rotation: [q.c, q.s], velocity: [v.x, v.y], angular_velocity: w }
     }
 
     /// A body's mass (kg) and moment of inertia (kg·m²).
@@ -322,7 +314,8 @@ impl World {
                 found.set_len(usize::try_from(written).unwrap_or(0));
             }
             // Both bodies of a pair name it: it counts where its first shape is asked.
-            let first = |c: &&ffi::b2ContactData| c.shapeIdA.index1 == shape.index1 && c.manifold.pointCount > 0;
+            let first =
+                |c: &&ffi::b2ContactData| c.shapeIdA.index1 == shape.index1 && c.manifold.pointCount > 0;
             pairs += found.iter().filter(first).count();
         }
         pairs

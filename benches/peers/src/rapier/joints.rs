@@ -75,18 +75,18 @@ fn rod(distance: &Distance, length: f64) -> Result<GenericJointBuilder, String> 
         return Err(format!("a least distance of {min} m"));
     }
     let rigid = SpringCoefficients::<f32>::joint_defaults();
-    let rigid = JointSpring {
-        hertz: f64::from(rigid.natural_frequency),
-        damping: f64::from(rigid.damping_ratio),
-    };
-    let mut builder =
-        GenericJointBuilder::new(JointAxesMask::empty()).coupled_axes(JointAxesMask::LIN_AXES);
+    let rigid =
+        JointSpring { hertz: f64::from(rigid.natural_frequency), damping: f64::from(rigid.damping_ratio) };
+    let mut builder = GenericJointBuilder::new(JointAxesMask::empty()).coupled_axes(JointAxesMask::LIN_AXES);
     let held = distance.spring.or(distance.max.is_none().then_some(rigid));
     if let Some(spring) = held {
         let [stiffness, damping] = per_mass(spring);
-        builder = builder
-            .motor_model(JointAxis::LinX, MotorModel::AccelerationBased)
-            .motor_position(JointAxis::LinX, length as f32, stiffness, damping);
+        builder = builder.motor_model(JointAxis::LinX, MotorModel::AccelerationBased).motor_position(
+            JointAxis::LinX,
+            length as f32,
+            stiffness,
+            damping,
+        );
     }
     if let Some(max) = distance.max {
         builder = builder.limits(JointAxis::LinX, [0.0, max as f32]);

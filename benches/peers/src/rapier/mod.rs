@@ -8,7 +8,7 @@ use lamina2d::simulation::BodyState;
 use rapier2d::math::{Pose, Rotation, Vector};
 use rapier2d::parry::shape::ConvexPolygon;
 use rapier2d::prelude::{
-    Collider, ColliderBuilder, CoefficientCombineRule, Group, IntegrationParameters, InteractionGroups,
+    CoefficientCombineRule, Collider, ColliderBuilder, Group, IntegrationParameters, InteractionGroups,
     InteractionTestMode, MassProperties, PhysicsWorld, RigidBody, RigidBodyBuilder, RigidBodyHandle,
     SharedShape,
 };
@@ -65,7 +65,10 @@ impl Rapier {
             world.insert_impulse_joint(a, b, joints::joint(blueprint, number, joint)?);
         }
         #[cfg(not(feature = "parallel"))]
-        anyhow::ensure!(setup.threads == 1, "rapier2d: built without the feature parallel, it has one thread");
+        anyhow::ensure!(
+            setup.threads == 1,
+            "rapier2d: built without the feature parallel, it has one thread"
+        );
         Ok(Self {
             world,
             bodies,

@@ -1,0 +1,100 @@
+//! The program: one JSON document with every field of the contract, a table, refusals with exit code 2.
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn peers(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamina-peers"));
+    command.args(arguments);
+    command
+}
+
+const FIELDS: [&str; 13] = [
+    "scene",
+    "bodies",
+    "engine",
+    "version",
+    "threads",
+    "settings",
+    "ms_per_step",
+    "contacts",
+    "max_penetration",
+    "mean_penetration",
+    "error",
+    "hash",
+    "momentum_error",
+];
+
+#[test]
+fn json_has_the_contract() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("rows.json");
+    let output = peers(&["stack/3", "roll", "--json", "--out", file.to_str().unwrap()]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(document["machine"]["rustc"].is_string());
+    for engine in document["engines"].as_array().unwrap() {
+        for field in ["name", "version", "build", "defaults"] {
+            assert!(!engine[field].is_null(), "{field}");
+        }
+        for field in ["compiler", "flags", "simd"] {
+            assert!(engine["build"][field].is_string(), "{field}");
+        }
+    }
+    let rows = document["rows"].as_array().unwrap();
+    for row in rows {
+        for field in FIELDS {
+            assert!(row.get(field).is_some(), "{field}");
+        }
+        for field in ["min", "median", "p99"] {
+            assert!(row["ms_per_step"][field].as_f64().unwrap() > 0.0, "{field}");
+        }
+        assert_eq!(row["finite"], true);
+        assert_eq!(row["stopped"], Value::Null);
+    }
+    let engines: Vec<_> = rows.iter().filter(|r| r["scene"] == "stack/3").map(|r| &r["engine"]).collect();
+    assert_eq!(engines, ["lamina2d", "box2d", "rapier2d"]);
+    assert!(rows.iter().filter(|r| r["scene"] == "roll").all(|r| r["error"].as_f64().unwrap() < 0.1));
+    let written: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    assert_eq!(written, document);
+}
+
+#[test]
+fn a_scene_no_peer_can_run_is_a_gap_not_a_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drag.toml");
+    let text = "[settings]\nsteps = 4\n[forces]\nlinear_drag = 0.1\n[[body]]\nshape = { circle = 0.5 }\nposition = [0, 0]\n";
+    std::fs::write(&file, text).unwrap();
+    let output = peers(&[file.to_str().unwrap(), "--json"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["rows"].as_array().unwrap().len(), 1);
+    let gaps = document["gaps"].as_array().unwrap();
+    assert_eq!(gaps.len(), 2);
+    assert!(gaps[0]["why"].as_str().unwrap().contains("it has no field linear_drag"));
+}
+
+#[test]
+fn unknown_scenes_are_refused_with_the_choices() {
+    for (arguments, says) in [
+        (["nowhere", "--json"], "unknown scene 'nowhere': one of circles, "),
+        (["stack/0", "--json"], "takes a number of boxes (1 to 1000000) after the slash, got '0'"),
+        (["absent.toml", "--json"], "cannot read scene file absent.toml"),
+    ] {
+        let output = peers(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(says), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
+fn the_plan_is_listed() {
+    for arguments in [&["--list"][..], &["--list", "--quick"]] {
+        let output = peers(arguments).output().unwrap();
+        assert!(output.status.success());
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains("stack/10, "), "{said}");
+    }
+}
