@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 use lamina2d::body::Bodies;
-use lamina2d::joint::Joint;
+use lamina2d::joint::{Joint, JointSpring};
 use lamina2d::lanes::f64s;
 use lamina2d::measure::Outline;
 use lamina2d::scene::{BodyKind, BodySpec, Scene};
@@ -108,6 +108,28 @@ impl Blueprint {
     pub fn ends(joint: &Joint) -> [usize; 2] {
         // The k-th body of a scene is in slot k + 1.
         joint.bodies.map(|id| id.slot() - 1)
+    }
+
+    /// A weld's spring by what the peers go by, who reckon its hertz and damping from the bodies' inertia alone:
+    /// ours counts that the welded point is held, which makes turning about it harder.
+    ///
+    /// With J = 1/k the inertia that is felt and I = 1/(1/I_A + 1/I_B): J·ω² = I·ω′² and J·ζω = I·ζ′ω′, so both
+    /// numbers grow by √(J/I).
+    pub fn weld_spring(&self, joint: &Joint, spring: JointSpring) -> JointSpring {
+        let ends = Self::ends(joint);
+        let inverse = |value: f64| if value == 0.0 { 0.0 } else { 1.0 / value };
+        let m: f64 = ends.iter().map(|&k| inverse(self.bodies[k].mass)).sum();
+        let [ia, ib] = ends.map(|k| inverse(self.bodies[k].inertia));
+        let [ra, rb] = [0, 1].map(|k| {
+            let turn = DVec2::from(self.bodies[ends[k]].start.rotation);
+            turn.rotate(DVec2::from(joint.anchors_body[k]))
+        });
+        let cross = ra.perp_dot(rb);
+        let determinant =
+            m * m + m * (ia * ra.length_squared() + ib * rb.length_squared()) + ia * ib * cross * cross;
+        let felt = m * (m * (ia + ib) + ia * ib * (ra - rb).length_squared()) / determinant;
+        let harder = ((ia + ib) / felt).sqrt();
+        JointSpring { hertz: spring.hertz * harder, damping: spring.damping * harder }
     }
 
     /// The circles of driven bodies.

@@ -181,7 +181,9 @@ fn new_joint(blueprint: &Blueprint, number: usize, joint: &Joint) -> Result<(End
                 limits: limits.map(|l| l.map(|angle| angle as f32)),
             }
         }
-        JointKind::Weld(weld) => NewJoint::Weld { spring: weld.spring.map(spring) },
+        JointKind::Weld(weld) => {
+            NewJoint::Weld { spring: weld.spring.map(|s| spring(blueprint.weld_spring(joint, s))) }
+        }
     };
     let [c, s] = joint.reference;
     let ends = Ends {

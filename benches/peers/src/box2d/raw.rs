@@ -350,7 +350,8 @@ unsafe fn add_shape(body: ffi::b2BodyId, new: &NewBody) -> ffi::b2ShapeId {
             }
             Form::Polygon(outline) => {
                 // The outline as it is: Box2D's own hull would weld and drop vertices.
-                let mut hull = ffi::b2Hull { points: [vec([0.0; 2]); 8], count: outline.len() as c_int };
+                let count = c_int::try_from(outline.len()).unwrap_or(0);
+                let mut hull = ffi::b2Hull { points: [vec([0.0; 2]); 8], count };
                 for (point, v) in hull.points.iter_mut().zip(outline) {
                     *point = vec(*v);
                 }

@@ -52,7 +52,7 @@ pub(super) fn joint(blueprint: &Blueprint, number: usize, joint: &Joint) -> Resu
         JointKind::Weld(weld) => match weld.spring {
             None => GenericJointBuilder::new(JointAxesMask::LOCKED_FIXED_AXES),
             Some(spring) => {
-                let [stiffness, damping] = per_mass(spring);
+                let [stiffness, damping] = per_mass(blueprint.weld_spring(joint, spring));
                 GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
                     .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
                     .motor_position(JointAxis::AngX, 0.0, stiffness, damping)

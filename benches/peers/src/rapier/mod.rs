@@ -58,7 +58,11 @@ impl Rapier {
                 let lacks = format!("it refuses the outline of body {number}");
                 return Err(blueprint.gap(Name::Rapier2d, lacks).into());
             };
-            bodies.push(world.insert(rigid_body(body, setup.sleep), collider).0);
+            let (handle, _) = world.insert(rigid_body(body, setup.sleep), collider);
+            // They stay until they are taken back.
+            world.bodies[handle].add_force(vector(body.spec.force), false);
+            world.bodies[handle].add_torque(body.spec.torque as f32, false);
+            bodies.push(handle);
         }
         for (number, joint) in blueprint.joints.iter().enumerate() {
             let [a, b] = Blueprint::ends(joint).map(|k| bodies[k]);

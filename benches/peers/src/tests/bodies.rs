@@ -1,5 +1,7 @@
 //! Each engine gets the same bodies: counts, masses, poses, fall, mixing rules, categories, forces, circles.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 mod common;
 
 use common::{PEERS, after, angle, close, named, scene_of, world};
