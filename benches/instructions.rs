@@ -28,23 +28,28 @@ use lamina2d::lanes::f32s;
 use lamina2d::simulation::Simulation;
 use lamina2d::world::World;
 
-use common::{Settled, step_through, world};
+use common::{Agreement, Settled, step_through, world};
 use kernels::Work;
 use steps::WINDOW_STEPS;
 
 /// The kernel of a name, called once.
-fn kernel_of(settled: &Settled, name: &str) -> Box<dyn Work> {
+fn kernel_of(settled: &Settled, agreement: &Agreement, name: &str) -> Box<dyn Work> {
     let all = kernels::all();
-    let kernel = all.iter().find(|kernel| kernel.name == name);
-    let mut work = kernel.unwrap_or_else(|| panic!("no kernel '{name}'")).build(settled);
+    let found = all.iter().find(|kernel| kernel.name == name);
+    let kernel = found.unwrap_or_else(|| panic!("no kernel '{name}'"));
+    let mut work = kernel.build(settled);
     work.run();
-    assert!(work.answer().count > 0, "{name} found nothing to do");
-    work.reset();
+    let answer = work.answer();
+    assert!(answer.count > 0 && work.elements() > 0, "{name} found nothing to do");
+    agreement.check(&kernel.alike, name, answer);
+    if work.resets() {
+        work.reset();
+    }
     work
 }
 
 /// The scene's world at the beginning of its window.
-fn scene_of(settled: &Settled, name: &str) -> Box<dyn Simulation> {
+fn scene_of(settled: &Settled, agreement: &Agreement, name: &str) -> Box<dyn Simulation> {
     let found = steps::all().into_iter().find_map(|case| {
         let lanes = case.lanes.iter().copied().find(|&lanes| case.at(lanes) == name)?;
         Some((case, lanes))
@@ -55,7 +60,7 @@ fn scene_of(settled: &Settled, name: &str) -> Box<dyn Simulation> {
     steps::step(world.as_mut());
     let mut ahead = world.duplicate();
     (0..WINDOW_STEPS).for_each(|_| steps::step(ahead.as_mut()));
-    steps::answer(name, ahead.as_ref(), case.touch);
+    agreement.check(&case.alike, name, steps::answer(name, ahead.as_ref(), case.touch));
     world
 }
 
@@ -110,9 +115,9 @@ fn restore(name: &str, steps: usize) -> World<f32s::X8> {
 
 /// Runs every setup once outside valgrind: states are left in files, answers are checked, and that nothing is left out.
 fn hand_over() {
-    let settled = Settled::new(hand_over_state);
-    KERNELS.iter().chain(PROOF).for_each(|name| drop(kernel_of(&settled, name)));
-    STEPS.iter().for_each(|name| drop(scene_of(&settled, name)));
+    let (settled, agreement) = (Settled::new(hand_over_state), Agreement::default());
+    KERNELS.iter().chain(PROOF).for_each(|name| drop(kernel_of(&settled, &agreement, name)));
+    STEPS.iter().for_each(|name| drop(scene_of(&settled, &agreement, name)));
     let of_gated_size = |name: &str| name.ends_with("/150/x8") || name.ends_with("/144/x8");
     for kernel in kernels::all().iter().filter(|kernel| of_gated_size(&kernel.name)) {
         assert!(KERNELS.contains(&kernel.name.as_str()), "{} is not among the kernels counted", kernel.name);
@@ -123,11 +128,11 @@ fn hand_over() {
 }
 
 fn kernel(name: &str) -> Box<dyn Work> {
-    kernel_of(&Settled::new(restore), name)
+    kernel_of(&Settled::new(restore), &Agreement::default(), name)
 }
 
 fn scene(name: &str) -> Box<dyn Simulation> {
-    scene_of(&Settled::new(restore), name)
+    scene_of(&Settled::new(restore), &Agreement::default(), name)
 }
 
 /// Names a list of benches, and counts what `$body` does with what `$setup` makes of each name. The workload is handed

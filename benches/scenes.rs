@@ -18,8 +18,8 @@ use lamina2d::scene::mixes::Mix;
 use lamina2d::simulation::Simulation;
 use lamina2d::thesis::{ThesisIntegrator, ThesisWorld, Version};
 
-use clock::{Agreement, criterion};
-use common::{Answer, DT_SECS, SETTLE_STEPS, Settled, scene, step_through};
+use clock::criterion;
+use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, scene, step_through};
 use steps::{Case, Touch, WINDOW_STEPS};
 
 type Group<'a> = BenchmarkGroup<'a, WallTime>;

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use criterion::{Bencher, BenchmarkId, Throughput};
 
-use clock::{Agreement, criterion};
-use common::{Settled, step_through};
+use clock::criterion;
+use common::{Agreement, Settled, step_through};
 use kernels::{Kernel, Work};
 
 fn main() {

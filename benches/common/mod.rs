@@ -1,4 +1,4 @@
-//! What all benches share: scenes, their settled states, and what a workload is.
+//! What all benches share: scenes, their settled states, and answers that must agree.
 //!
 //! A workload has one name in all of them, `group/what/bodies/xLANES`: criterion times it ([`crate::kernels`] in
 //! `stages.rs`, [`crate::steps`] in `scenes.rs`), and valgrind counts its instructions (`instructions.rs`).
@@ -68,4 +68,22 @@ pub(crate) struct Answer {
     pub(crate) count: usize,
     /// Of every bit of it.
     pub(crate) hash: u64,
+}
+
+/// The answers of benches, by what those have in common that must answer the same.
+#[derive(Debug, Default)]
+pub(crate) struct Agreement {
+    firsts: RefCell<BTreeMap<String, (String, Answer)>>,
+}
+
+impl Agreement {
+    /// Compares with the first answer of those that are `alike`.
+    ///
+    /// # Panics
+    /// Where they differ.
+    pub(crate) fn check(&self, alike: &str, bench: &str, answer: Answer) {
+        let mut firsts = self.firsts.borrow_mut();
+        let (other, expected) = firsts.entry(alike.to_owned()).or_insert_with(|| (bench.to_owned(), answer));
+        assert_eq!(answer, *expected, "{bench} (left) and {other} (right) disagree");
+    }
 }
