@@ -18,7 +18,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `report`, `cli` (feature `cli`) | experiments, plots, the page; the program `lamina` |
+//! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
@@ -105,6 +105,8 @@ pub mod contact;
 pub mod continuous;
 pub mod drive;
 pub mod force;
+#[cfg(feature = "cli")]
+pub mod gate;
 pub mod integrate;
 pub mod island;
 pub mod joint;
