@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare};
+use lamina2d::gate;
+use lamina2d::report::peers::{self, Peers};
+use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare, instructions};
 
 use super::{output, refuse};
 
@@ -25,6 +27,12 @@ pub(crate) struct Args {
     /// Compare with the report in this folder: ratios with the machine's drift taken out.
     #[arg(long, value_name = "DIR")]
     against: Option<PathBuf>,
+    /// What lamina-peers measured, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/peers.json")]
+    peers: PathBuf,
+    /// What lamina gate holds, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/instructions.toml")]
+    instructions: PathBuf,
     /// Print a JSON summary.
     #[arg(long)]
     json: bool,
@@ -50,7 +58,8 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
             .with_context(|| format!("--out: cannot write into {}", folder.display()))
             .map_err(refuse)?;
     }
-    let data = measure(args.quick, EXPERIMENTS)?;
+    let (peers, instructions) = beside(args).map_err(refuse)?;
+    let data = Data { peers, instructions, ..measure(args.quick, EXPERIMENTS)? };
     for folder in &folders {
         report::write(&data, folder)
             .with_context(|| format!("cannot write the report into {}", folder.display()))?;
@@ -65,6 +74,14 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     let results = Table::of(&data.headlines())?;
     output::print_text(&output::table(results.header, results.lines))?;
     output::print_text(&format!("\nPage: {}", args.out.join("index.html").display()))
+}
+
+/// What other programs have measured, where their files are.
+fn beside(args: &Args) -> anyhow::Result<(Option<Peers>, Vec<instructions::Row>)> {
+    let peers = args.peers.exists().then(|| peers::read(&args.peers)).transpose()?;
+    let counts = args.instructions.exists().then(|| gate::baseline(&args.instructions)).transpose()?;
+    let last = counts.as_ref().and_then(|counts| counts.baseline.last());
+    Ok((peers, last.map(instructions::rows).unwrap_or_default()))
 }
 
 /// The experiments of a list of names.

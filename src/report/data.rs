@@ -3,12 +3,13 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::Machine;
 use super::experiments::{
     broad_phase, contacts, determinism, flight, lanes, limits, matrix, skips, sleep, stability,
 };
 use super::headline::{Headline, headlines};
+use super::peers::{self, Peers};
 use super::table::{Record, Table};
+use super::{Machine, instructions};
 
 /// Everything a report shows.
 #[derive(Clone, Debug, Serialize)]
@@ -37,6 +38,12 @@ pub struct Data {
     pub flight: Vec<flight::Row>,
     /// What the machine can copy and calculate.
     pub limits: Vec<limits::Row>,
+    /// What `lamina-peers` measured, in a file of its own.
+    #[serde(skip)]
+    pub peers: Option<Peers>,
+    /// What `lamina gate` holds, in a file of its own.
+    #[serde(skip)]
+    pub instructions: Vec<instructions::Row>,
 }
 
 /// One experiment: fills its rows of a report.
@@ -141,6 +148,8 @@ impl Data {
             skips: Vec::new(),
             flight: Vec::new(),
             limits: Vec::new(),
+            peers: None,
+            instructions: Vec::new(),
         }
     }
 
@@ -183,10 +192,13 @@ impl Data {
             Table::of(&self.broad_phase)?,
             Table::of(&self.determinism)?,
             Table::of(&self.stability)?,
+            Table::of(&self.peers.as_ref().map(Peers::scenes).unwrap_or_default())?,
+            Table::of(self.peers.as_ref().map_or(&[][..], |peers| &peers.rows))?,
             Table::of(&self.contacts)?,
             Table::of(&self.lanes)?,
             Table::of(&self.skips)?,
             Table::of(&self.sleep)?,
+            Table::of(&self.instructions)?,
             Table::of(&limits::shares(self))?,
             Table::of(&self.limits)?,
             Table::of(&self.flight)?,
@@ -204,6 +216,8 @@ impl Data {
             // The matrix is large, and in the report's folder.
             match table.name {
                 matrix::Row::NAME if !self.headlines().is_empty() => {}
+                // In files of their own.
+                peers::Row::NAME | instructions::Row::NAME => {}
                 Headline::NAME => {
                     summary.insert("rows".to_owned(), json!(table.raw));
                 }

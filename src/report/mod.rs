@@ -5,8 +5,8 @@
 //! | [`experiments`] | what is measured, each a table of rows |
 //! | `data` | the list of experiments: what a report consists of |
 //! | `headline` | the result table |
-//! | `peers` | what `lamina-peers` measured, read from its file |
-//! | `instructions` | what `lamina gate` holds, read from its file |
+//! | [`peers`] | what `lamina-peers` measured, read from its file |
+//! | [`instructions`] | what `lamina gate` holds, read from its file |
 //! | `machine` | where it was measured, and with which build |
 //! | `table` | rows as tables and CSV |
 //! | `plots` | SVG from rows |
@@ -17,8 +17,10 @@ pub mod compare;
 mod data;
 pub mod experiments;
 mod headline;
+pub mod instructions;
 mod machine;
 mod page;
+pub mod peers;
 mod plots;
 mod table;
 mod timing;

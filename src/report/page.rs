@@ -26,7 +26,7 @@ const GROUPS: &[Group] = &[
     Group {
         title: "Run time against error",
         intro: "What an error costs: substeps buy stiffness. Down and to the left is better.",
-        plots: &["time_against_overlap.svg", "peers_time_against_error.svg"],
+        plots: &["peers_time_against_overlap.svg", "peers_time_against_sag.svg", "time_against_overlap.svg"],
         tables: &["stability"],
     },
     Group {
@@ -34,7 +34,7 @@ const GROUPS: &[Group] = &[
         intro: "Box2D v3 and rapier on the library's own scenes, body for body, in alternating windows of one process; \
                 the same f64 code measures every engine's overlaps and errors.",
         plots: &["peers_times_faster.svg"],
-        tables: &["peers", "peer_sweeps"],
+        tables: &["peers", "peer_rows"],
     },
     Group {
         title: "The thesis's experiments",
@@ -164,7 +164,24 @@ fn sentences(data: &Data) -> Vec<String> {
     };
     let sizes = [150, 1000, 10_000];
     let ours = sizes.iter().flat_map(|&bodies| [2, 4].map(|substeps| sentence("polygons", bodies, substeps)));
-    ours.flatten().collect()
+    let mut all: Vec<String> = ours.flatten().collect();
+    let scenes = data.peers.as_ref().map(super::peers::Peers::scenes).unwrap_or_default();
+    for wanted in ["polygons/150", "polygons/1000", "polygons/10000", "pyramid/100"] {
+        let scene = scenes.iter().find(|s| s.scene == wanted && s.threads == 1 && !s.sleep);
+        all.extend(scene.and_then(beside_peers));
+    }
+    all
+}
+
+/// One scene beside the peers, in a sentence.
+fn beside_peers(scene: &super::peers::Scene) -> Option<String> {
+    let [box2d, rapier] = scene.times_faster();
+    let [ours, theirs, last] = scene.mean_penetration.map(|m| m.map(|m| m * 1e3));
+    Some(format!(
+        "`{}`, all with 4 substeps: {:.1}× as fast as Box2D, {:.1}× as rapier; bodies overlap by {:.2} mm on average, \
+         theirs by {:.2} and {:.2} mm.",
+        scene.scene, box2d?, rapier?, ours?, theirs?, last?
+    ))
 }
 
 /// HTML of a text in which backticks mark code.

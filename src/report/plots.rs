@@ -5,6 +5,7 @@ mod chart;
 use chart::{Series, Slope, bars, heat_map, log_log, stacked};
 
 use super::experiments::{broad_phase, contacts, matrix, stability};
+use super::peers::{self, Peers};
 use super::{Data, fitted_exponent};
 use crate::measure::Stage;
 use crate::settings::Solver;
@@ -25,7 +26,11 @@ pub(super) struct Plot {
 /// All plots of a report that have something to show.
 pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
     type Draw = fn(&Data) -> anyhow::Result<Plot>;
-    let all: [(bool, Draw); 7] = [
+    let peers = data.peers.is_some();
+    let all: [(bool, Draw); 10] = [
+        (peers, peers_times_faster),
+        (peers, |data| peers_sweep(data, &OVERLAP)),
+        (peers, |data| peers_sweep(data, &SAG)),
         (!data.matrix.is_empty(), times_faster),
         (!data.matrix.is_empty(), time_against_bodies),
         (!data.matrix.is_empty(), mix_by_integrator),
@@ -204,5 +209,87 @@ fn stages(data: &Data) -> anyhow::Result<Plot> {
             &labels,
             &Stage::ALL.map(|s| of(&s)),
         )?,
+    })
+}
+
+/// Scenes of the bars beside the peers: what there is of them.
+const PEER_SCENES: [&str; 10] = [
+    "circles/1000",
+    "polygons/150",
+    "polygons/1000",
+    "polygons/10000",
+    "all/10000",
+    "pyramid/100",
+    "tumbler/2000",
+    "joint_grid/60",
+    "rain/1000",
+    "free_flight/100000",
+];
+
+fn peers_times_faster(data: &Data) -> anyhow::Result<Plot> {
+    let scenes = data.peers.as_ref().map(Peers::scenes).unwrap_or_default();
+    let find = |name: &&str| scenes.iter().find(|s| s.scene == **name && s.threads == 1 && !s.sleep);
+    let shown: Vec<_> = PEER_SCENES.iter().filter_map(find).collect();
+    let labels: Vec<_> = shown.iter().map(|s| s.scene.replace("000", "k").replace("kk", "M")).collect();
+    let series = ["Box2D", "rapier"].into_iter().enumerate().map(|(peer, name)| {
+        let height = |s: &&peers::Scene| s.times_faster()[peer].unwrap_or(0.0);
+        let points = shown.iter().enumerate().map(|(k, s)| (k as f64, height(s))).collect();
+        Series { name: format!("against {name}"), points }
+    });
+    let series: Vec<_> = series.collect();
+    Ok(Plot {
+        file: "peers_times_faster.svg",
+        about:
+            "How many times faster than Box2D and rapier each scene runs, all with 4 substeps, one thread, \
+                sleeping off"
+                .to_owned(),
+        command: "cargo run --release -p lamina-peers",
+        svg: bars("4 substeps, one thread: times faster", "times faster", &labels, &series)?,
+    })
+}
+
+/// A sweep over substeps, all engines in one diagram.
+struct Sweep {
+    scene: &'static str,
+    file: &'static str,
+    title: &'static str,
+    error: &'static str,
+    /// Millimetres.
+    of: fn(&peers::Row) -> Option<f64>,
+}
+
+const OVERLAP: Sweep = Sweep {
+    scene: "polygons/1000",
+    file: "peers_time_against_overlap.svg",
+    title: "1000 polygons, 1 to 16 substeps: error against run time",
+    error: "mean overlap mm",
+    of: |row| row.mean_penetration,
+};
+const SAG: Sweep = Sweep {
+    scene: "pyramid/30",
+    file: "peers_time_against_sag.svg",
+    title: "Pyramid of 465 boxes, 1 to 16 substeps: error against run time",
+    error: "top has sunk mm",
+    of: |row| row.sunk,
+};
+
+fn peers_sweep(data: &Data, sweep: &Sweep) -> anyhow::Result<Plot> {
+    let of = |engine: &str| {
+        let rows = data.peers.as_ref().map(|p| p.sweep(sweep.scene, engine)).unwrap_or_default();
+        let point = |row: &&peers::Row| {
+            let error = (sweep.of)(row)?.abs().max(1e-7) * 1e3;
+            Some((row.ms_per_step.median, error))
+        };
+        Series { name: engine.to_owned(), points: rows.iter().filter_map(point).collect() }
+    };
+    let series = Peers::ENGINES.map(of);
+    Ok(Plot {
+        file: sweep.file,
+        about: format!(
+            "{}: {} against the median time per step, each engine with 1, 2, 4, 8 and 16 substeps or iterations",
+            sweep.scene, sweep.error
+        ),
+        command: "cargo run --release -p lamina-peers",
+        svg: log_log(sweep.title, ["ms per step", sweep.error], &series, Slope::Down)?,
     })
 }
