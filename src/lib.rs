@@ -26,7 +26,7 @@
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
 //! | [`island`] | which bodies are at rest together and sleep |
 //! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
-//! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
+//! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only room that names `wide` |
 //!
 //! # One step
 //! | stage | reads | writes |
