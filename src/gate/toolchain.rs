@@ -105,8 +105,8 @@ fn runner_version(said: &str) -> Option<&str> {
 
 /// The `target-cpu` among compiler flags.
 fn target_cpu(flags: &str) -> String {
-    let named = flags.split_whitespace().filter_map(|flag| flag.split_once("target-cpu="));
-    named.last().map_or_else(|| format!("that of {}", std::env::consts::ARCH), |(_, cpu)| cpu.to_owned())
+    let mut named = flags.split_whitespace().filter_map(|flag| flag.split_once("target-cpu="));
+    named.next_back().map_or_else(|| format!("that of {}", std::env::consts::ARCH), |(_, cpu)| cpu.to_owned())
 }
 
 /// The commit that is checked out, with `+changes` where files differ from it.
