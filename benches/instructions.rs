@@ -9,7 +9,7 @@
 //! files for [`restore`].
 //!
 //! ```sh
-//! cargo bench --features instructions --bench instructions          # needs valgrind and iai-callgrind-runner
+//! cargo bench --bench instructions          # needs valgrind and iai-callgrind-runner
 //! ```
 
 #![expect(missing_docs, reason = "the framework's macros make functions and constants without")]
