@@ -9,7 +9,7 @@
 //! files for [`restore`].
 //!
 //! ```sh
-//! cargo bench --features instructions --bench instructions          # needs valgrind and iai-callgrind-runner
+//! cargo bench --bench instructions          # needs valgrind and iai-callgrind-runner
 //! ```
 
 #![expect(missing_docs, reason = "the framework's macros make functions and constants without")]
@@ -116,8 +116,12 @@ fn restore(name: &str, steps: usize) -> World<f32s::X8> {
 /// Runs every setup once outside valgrind: states are left in files, answers are checked, and that nothing is left out.
 fn hand_over() {
     let (settled, agreement) = (Settled::new(hand_over_state), Agreement::default());
-    KERNELS.iter().chain(PROOF).for_each(|name| drop(kernel_of(&settled, &agreement, name)));
-    STEPS.iter().for_each(|name| drop(scene_of(&settled, &agreement, name)));
+    for name in KERNELS.iter().chain(PROOF) {
+        kernel_of(&settled, &agreement, name);
+    }
+    for name in STEPS {
+        scene_of(&settled, &agreement, name);
+    }
     let of_gated_size = |name: &str| name.ends_with("/150/x8") || name.ends_with("/144/x8");
     for kernel in kernels::all().iter().filter(|kernel| of_gated_size(&kernel.name)) {
         assert!(KERNELS.contains(&kernel.name.as_str()), "{} is not among the kernels counted", kernel.name);

@@ -43,8 +43,11 @@ pub(crate) fn step_through(name: &str, steps: usize) -> World<f32s::X8> {
 pub(crate) struct Settled {
     /// Makes the scene of a name after some steps.
     make: fn(&str, usize) -> World<f32s::X8>,
-    worlds: RefCell<BTreeMap<(String, usize), Rc<World<f32s::X8>>>>,
+    worlds: RefCell<Worlds>,
 }
+
+/// By name and steps.
+type Worlds = BTreeMap<(String, usize), Rc<World<f32s::X8>>>;
 
 impl Settled {
     /// With what makes a scene of a name after some steps, e.g. [`step_through`].

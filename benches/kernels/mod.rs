@@ -59,8 +59,11 @@ pub(crate) struct Kernel {
     pub(crate) name: String,
     /// Kernels that share it must give the same answer.
     pub(crate) alike: String,
-    build: Box<dyn Fn(&Settled) -> Box<dyn Work>>,
+    build: Build,
 }
+
+/// Makes a kernel's input and memory.
+type Build = Box<dyn Fn(&Settled) -> Box<dyn Work>>;
 
 impl Kernel {
     /// Makes its input and memory.

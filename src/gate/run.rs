@@ -118,7 +118,7 @@ fn start(group: &str) -> Result<Run, RunError> {
 fn cargo(more: &[&str]) -> Result<Run, RunError> {
     let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let mut command = Command::new(program);
-    command.args(["bench", "--bench", "instructions", "--features", "instructions"]).args(more);
+    command.args(["bench", "--bench", "instructions"]).args(more);
     command.env("CARGO_ENCODED_RUSTFLAGS", env!("LAMINA_FLAGS").replace(' ', "\u{1f}"));
     command.stdin(Stdio::null()).stdout(Stdio::piped());
     Ok(Run(command.spawn()?))
