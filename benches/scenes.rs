@@ -1,19 +1,12 @@
-//! Whole steps of settled scenes.
+//! Whole steps of settled scenes: what they are, see [`steps`]. Time per step, and per body.
 //!
-//! `group/scene/bodies/…/xLANES`; time per step, and per body. The steps timed are always the same: the first
-//! [`WINDOW_STEPS`] after the settled state, over and over. Before the clock runs, every bench takes those
-//! steps once; all lane widths, and the broad phase on and off, must then be in the same state, with contacts
-//! (in free flight: without).
-//!
-//! | group | what runs |
-//! |---|---|
-//! | `mixes` | the thesis's four mixes × integrators at 150; at 1000 and polygons at 10,000 with one |
-//! | `free_flight` | 100,000 circles that never touch |
-//! | `stack` | ten boxes at rest on each other |
-//! | `broad_on_off` | polygons with the broad phase of `auto` and with all pairs in the narrow phase |
-//! | `baselines` | the thesis's engine, faithful and tidy, at 150, from the states `mixes` starts from |
+//! Before the clock runs, every bench takes the steps of its window once; all lane widths, and skips and the broad
+//! phase on and off, must then be in the same state, with contacts (in free flight: without). Beside the cases of
+//! [`steps`] the group `baselines`: the thesis's engine, faithful and tidy, at 150, from the states `mixes` starts from.
 
+mod clock;
 mod common;
+mod steps;
 
 use std::time::{Duration, Instant};
 
@@ -22,28 +15,46 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput
 use lamina2d::report::experiments::posed;
 use lamina2d::scene::Scene;
 use lamina2d::scene::mixes::Mix;
-use lamina2d::settings::{Broad, Integrator, Settings, Skips};
 use lamina2d::simulation::Simulation;
 use lamina2d::thesis::{ThesisIntegrator, ThesisWorld, Version};
 
-use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, criterion, scene};
-
-/// Steps from the settled state on that are timed, and after which answers are compared.
-const WINDOW_STEPS: u64 = 20;
-/// Widths that are compared.
-const LANES: [usize; 2] = [1, 8];
+use clock::criterion;
+use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, scene, step_through};
+use steps::{Case, Touch, WINDOW_STEPS};
 
 type Group<'a> = BenchmarkGroup<'a, WallTime>;
 
 fn main() {
     let mut criterion = criterion();
-    let settled = Settled::default();
-    mixes(&mut criterion, &settled);
-    free_flight(&mut criterion, &settled);
-    stack(&mut criterion, &settled);
-    broad_on_off(&mut criterion, &settled);
-    baselines(&mut criterion, &settled);
+    let settled = Settled::new(step_through);
+    let agreement = Agreement::default();
+    let cases = steps::all();
+    for cases in cases.chunk_by(|a, b| group_of(a) == group_of(b)) {
+        let mut group = group(&mut criterion, group_of(&cases[0]));
+        for case in cases {
+            group.throughput(Throughput::Elements(case.bodies));
+            // Ten thousand bodies: a step is as long as a sample of the others.
+            group.sample_size(if case.bodies > 2000 { 10 } else { 20 });
+            for &lanes in case.lanes {
+                let start = || Ours { world: case.start(&settled, lanes), touch: case.touch };
+                bench_steps(&mut group, &case.at(lanes), &case.alike, start, &agreement);
+            }
+        }
+        group.finish();
+    }
+    baselines(&mut criterion, &settled, &agreement);
     criterion.final_summary();
+}
+
+fn group_of(case: &Case) -> &str {
+    case.name.split('/').next().unwrap_or_default()
+}
+
+fn group<'a>(criterion: &'a mut Criterion, name: &str) -> Group<'a> {
+    let mut group = criterion.benchmark_group(name);
+    // Steps take long and are all alike: no need for samples of growing length.
+    group.sampling_mode(SamplingMode::Flat);
+    group
 }
 
 /// A world in the state from which steps are timed.
@@ -53,20 +64,26 @@ trait Engine: Sized {
     /// Steps once.
     fn step(&mut self);
     /// Contacts of the last step and hash of the state.
-    fn answer(&self) -> Answer;
+    fn answer(&self, name: &str) -> Answer;
 }
 
-impl Engine for Box<dyn Simulation> {
+/// One of our worlds.
+struct Ours {
+    world: Box<dyn Simulation>,
+    touch: Touch,
+}
+
+impl Engine for Ours {
     fn again(&self) -> Self {
-        self.duplicate()
+        Self { world: self.world.duplicate(), touch: self.touch }
     }
 
     fn step(&mut self) {
-        (**self).step(DT_SECS).expect("a scene that stays finite");
+        steps::step(self.world.as_mut());
     }
 
-    fn answer(&self) -> Answer {
-        Answer { count: self.counts().contacts, hash: self.hash() }
+    fn answer(&self, name: &str) -> Answer {
+        steps::answer(name, self.world.as_ref(), self.touch)
     }
 }
 
@@ -94,35 +111,31 @@ impl Engine for Baseline<'_> {
         self.world.step(DT_SECS as f32);
     }
 
-    fn answer(&self) -> Answer {
-        Answer { count: self.world.contacts(), hash: self.world.hash() }
+    fn answer(&self, name: &str) -> Answer {
+        let count = self.world.contacts();
+        assert!(count > 0, "{name}: no contacts");
+        Answer { count, hash: self.world.hash() }
     }
 }
 
-/// Does the scene have contacts?
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Touch {
-    Always,
-    Never,
-}
-
-/// Benches the steps after the state that `start` builds, which is called only if the bench runs.
+/// Benches the steps after the state that `start` builds, which is called only if the bench runs. `name` is that of
+/// its group, the function and, behind the last slash, the variant.
 fn bench_steps<E: Engine>(
     group: &mut Group<'_>,
-    [function, variant]: [&str; 2],
+    name: &str,
+    alike: &str,
     start: impl Fn() -> E,
-    touch: Touch,
     agreement: &Agreement,
 ) {
+    let (function, variant) = name.rsplit_once('/').expect("a name with a variant");
+    let function = function.split_once('/').expect("a name with a group").1;
     let mut checked = None;
     group.bench_function(BenchmarkId::new(function, variant), |bencher| {
         let settled = checked.get_or_insert_with(|| {
             let settled = start();
             let mut world = ready(&settled);
             (0..WINDOW_STEPS).for_each(|_| world.step());
-            let (name, answer) = (format!("{function}/{variant}"), world.answer());
-            assert_eq!(answer.count > 0, touch == Touch::Always, "{name}: {} contacts", answer.count);
-            agreement.check(&name, answer);
+            agreement.check(alike, name, world.answer(name));
             settled
         });
         bencher.iter_custom(|steps| time_steps(settled, steps));
@@ -150,102 +163,19 @@ fn time_steps<E: Engine>(settled: &E, steps: u64) -> Duration {
     elapsed
 }
 
-/// One of our scenes: its name, the steps that settle it, what it runs with.
-struct Case<'a> {
-    scene: &'a str,
-    settle_steps: usize,
-    settings: Settings,
-    touch: Touch,
-}
-
-impl Case<'_> {
-    /// Benches it at each of [`LANES`] as `function/xLANES`.
-    fn bench(&self, group: &mut Group<'_>, settled: &Settled, function: &str, agreement: &Agreement) {
-        for lanes in LANES {
-            let start = || {
-                let world = settled.get(self.scene, self.settle_steps);
-                world.with_settings(Settings { lanes, ..self.settings }).expect("settings that run")
-            };
-            bench_steps(group, [function, &format!("x{lanes}")], start, self.touch, agreement);
-        }
-    }
-}
-
-fn group<'a>(criterion: &'a mut Criterion, name: &str) -> Group<'a> {
-    let mut group = criterion.benchmark_group(name);
-    // Steps take long and are all alike: no need for samples of growing length.
-    group.sampling_mode(SamplingMode::Flat);
-    group
-}
-
-fn mixes(criterion: &mut Criterion, settled: &Settled) {
-    let mut group = group(criterion, "mixes");
-    let mut bench = |mix: Mix, bodies: usize, integrator: Integrator| {
-        let scene = &format!("{}/{bodies}", mix.name());
-        let settings = Settings { integrator, ..Settings::default() };
-        let case = Case { scene, settle_steps: SETTLE_STEPS, settings, touch: Touch::Always };
-        group.throughput(Throughput::Elements(bodies as u64));
-        // Ten thousand bodies: a step is as long as a sample of the others.
-        group.sample_size(if bodies > 1000 { 10 } else { 20 });
-        case.bench(&mut group, settled, &format!("{scene}/{integrator}"), &Agreement::default());
-    };
-    for mix in Mix::ALL {
-        for &integrator in Integrator::ALL {
-            bench(mix, 150, integrator);
-        }
-        bench(mix, 1000, Integrator::SemiImplicitEuler);
-    }
-    bench(Mix::Polygons, 10_000, Integrator::SemiImplicitEuler);
-    group.finish();
-}
-
-fn free_flight(criterion: &mut Criterion, settled: &Settled) {
-    let mut group = group(criterion, "free_flight");
-    group.throughput(Throughput::Elements(100_000)).sample_size(10);
-    let (scene, settings) = ("free_flight/100000", Settings::default());
-    let case = Case { scene, settle_steps: 0, settings, touch: Touch::Never };
-    case.bench(&mut group, settled, "100000", &Agreement::default());
-    group.finish();
-}
-
-fn stack(criterion: &mut Criterion, settled: &Settled) {
-    let mut group = group(criterion, "stack");
-    group.throughput(Throughput::Elements(10));
-    let (scene, settings) = ("stack/10", Settings::default());
-    let case = Case { scene, settle_steps: 300, settings, touch: Touch::Always };
-    case.bench(&mut group, settled, "10", &Agreement::default());
-    group.finish();
-}
-
-fn broad_on_off(criterion: &mut Criterion, settled: &Settled) {
-    let mut group = group(criterion, "broad_on_off");
-    // The thesis's numbers of bodies.
-    for bodies in [60, 80, 100, 200] {
-        let scene = &format!("polygons/{bodies}");
-        let agreement = Agreement::default();
-        group.throughput(Throughput::Elements(bodies));
-        for (name, broad) in [("on", Broad::Auto), ("off", Broad::Off)] {
-            // Which pairs are listed decides when manifolds are reused; all other skips keep every bit.
-            let settings = Settings { broad, skips: Skips::EXACT, ..Settings::default() };
-            let case = Case { scene, settle_steps: SETTLE_STEPS, settings, touch: Touch::Always };
-            case.bench(&mut group, settled, &format!("{scene}/{name}"), &agreement);
-        }
-    }
-    group.finish();
-}
-
-fn baselines(criterion: &mut Criterion, settled: &Settled) {
+fn baselines(criterion: &mut Criterion, settled: &Settled, agreement: &Agreement) {
     let mut group = group(criterion, "baselines");
-    group.throughput(Throughput::Elements(150));
+    group.throughput(Throughput::Elements(150)).sample_size(20);
     for mix in Mix::ALL {
         let name = &format!("{}/150", mix.name());
         let start = posed(&scene(name), &*settled.get(name, SETTLE_STEPS));
         for integrator in ThesisIntegrator::ALL {
-            let label = format!("{name}/{}", format!("{integrator:?}").to_lowercase());
+            let label = format!("baselines/{name}/{}", format!("{integrator:?}").to_lowercase());
             for (engine, version) in [("thesis", Version::Faithful), ("tidy", Version::Tidy)] {
-                let start = || Baseline::new(&start, integrator, version);
+                let (start, name) =
+                    (|| Baseline::new(&start, integrator, version), format!("{label}/{engine}"));
                 // The two agree to rounding only: of each, only the contacts are checked.
-                bench_steps(&mut group, [&label, engine], start, Touch::Always, &Agreement::default());
+                bench_steps(&mut group, &name, &name, start, agreement);
             }
         }
     }

@@ -15,6 +15,7 @@
 //! number (4 B and a trigonometric call wherever it is used).
 
 mod check;
+mod grow;
 mod polygons;
 
 use std::ops::Range;
@@ -432,101 +433,5 @@ impl<R: Real> Bodies<R> {
             }
         };
         body.into_iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
-    }
-
-    /// Bytes held by columns and polygon rows.
-    pub fn bytes(&self) -> usize {
-        let columns = [
-            &self.x,
-            &self.y,
-            &self.c,
-            &self.s,
-            &self.vx,
-            &self.vy,
-            &self.w,
-            &self.inv_mass,
-            &self.inv_inertia,
-            &self.extent_x,
-            &self.extent_y,
-            &self.radius,
-            &self.core,
-            &self.friction,
-            &self.restitution,
-        ];
-        let force = self.force.iter().flatten().map(Column::bytes).sum::<usize>();
-        let rows = self.polygons.owner.len() * (2 * size_of::<HullRows<R>>() + 5);
-        let cold = self.len() * (2 + 2 * 4 + size_of::<Filter>() + 1);
-        columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold + self.drives.bytes()
-    }
-
-    fn grow(&mut self) -> usize {
-        let slot = self.len();
-        for column in [
-            &mut self.x,
-            &mut self.y,
-            &mut self.c,
-            &mut self.s,
-            &mut self.vx,
-            &mut self.vy,
-            &mut self.w,
-            &mut self.inv_mass,
-            &mut self.inv_inertia,
-            &mut self.extent_x,
-            &mut self.extent_y,
-            &mut self.radius,
-            &mut self.core,
-            &mut self.friction,
-            &mut self.restitution,
-        ] {
-            column.resize(slot + 1);
-        }
-        for column in self.force.iter_mut().flatten() {
-            column.resize(slot + 1);
-        }
-        self.form.push(Form::Circle);
-        self.kind.push(BodyKind::Static);
-        self.shape_start.push(0);
-        self.filter.push(Filter::default());
-        self.generation.push(0);
-        self.alive.push(false);
-        slot
-    }
-
-    /// Padding, said once: no mass, no extent, out of reach, in no category.
-    fn make_inert(&mut self, slot: usize) {
-        for column in [
-            &mut self.s,
-            &mut self.vx,
-            &mut self.vy,
-            &mut self.w,
-            &mut self.inv_mass,
-            &mut self.inv_inertia,
-            &mut self.extent_x,
-            &mut self.extent_y,
-            &mut self.radius,
-            &mut self.friction,
-            &mut self.restitution,
-        ] {
-            column[slot] = R::ZERO;
-        }
-        self.c[slot] = R::ONE;
-        self.x[slot] = R::FAR;
-        self.y[slot] = R::FAR;
-        self.core[slot] = R::FAR;
-        self.form[slot] = Form::Circle;
-        self.kind[slot] = BodyKind::Static;
-        self.filter[slot] = Filter::default();
-        self.alive[slot] = false;
-    }
-
-    fn write_force(&mut self, slot: usize, values: [f64; 3]) {
-        if self.force.is_none() && values != [0.0; 3] {
-            self.force = Some(std::array::from_fn(|_| Column::filled(self.x.len(), R::ZERO)));
-        }
-        if let Some(columns) = &mut self.force {
-            for (column, value) in columns.iter_mut().zip(values) {
-                column[slot] = R::from_f64(value);
-            }
-        }
     }
 }

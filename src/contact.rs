@@ -8,9 +8,10 @@
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
 mod rest;
+mod table;
 
-use crate::column::Column;
 use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real, set_lanes};
+use table::PairTable;
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.
@@ -78,130 +79,6 @@ impl Code {
     #[inline(always)]
     pub fn feature(self, k: usize) -> Feature {
         (self.0 >> (8 * k) & 0xff) as Feature
-    }
-}
-
-/// One list of pairs with what each keeps. The last two places are no pairs: [`Manifolds::padding`] is all zeros
-/// and is what padding lanes of a solver read; [`Manifolds::spill`] is where padding lanes of the narrow phase write.
-#[derive(Clone, Debug)]
-struct PairTable<R: Real> {
-    /// Slots of the bodies A and B.
-    a: Vec<u32>,
-    b: Vec<u32>,
-    /// Ends of the six buckets.
-    ends: [usize; 6],
-    code: Column<R>,
-    geometry: Column<R>,
-    gap: Column<R>,
-    impulse: Column<R>,
-    color: Vec<u8>,
-}
-
-impl<R: Real> Default for PairTable<R> {
-    fn default() -> Self {
-        let zeros = || Column::new(R::ZERO);
-        let mut table = Self {
-            a: Vec::new(),
-            b: Vec::new(),
-            ends: [0; 6],
-            code: zeros(),
-            geometry: zeros(),
-            gap: zeros(),
-            impulse: zeros(),
-            color: Vec::new(),
-        };
-        table.resize(0);
-        table
-    }
-}
-
-impl<R: Real> PairTable<R> {
-    fn resize(&mut self, pairs: usize) {
-        let places = pairs + 2;
-        self.a.resize(places, 0);
-        self.b.resize(places, 0);
-        self.color.resize(places, UNCOLORED);
-        self.grow_columns(places);
-    }
-
-    fn grow_columns(&mut self, places: usize) {
-        if self.code.len() < places {
-            // Grown with room to spare, so that a list that wavers does not allocate.
-            let room = places.next_power_of_two();
-            self.code.resize(room);
-            self.geometry.resize(room * ROW);
-            self.gap.resize(room * 4);
-            self.impulse.resize(room * 4);
-        }
-    }
-
-    /// Room for as many pairs as the other table has, so that the next list does not allocate.
-    fn make_room(&mut self, pairs: usize) {
-        let more = (pairs + 2).saturating_sub(self.a.len());
-        self.a.reserve(more);
-        self.b.reserve(more);
-        self.color.reserve(more);
-        self.grow_columns(pairs + 2);
-    }
-
-    /// The places of a bucket.
-    fn bucket(&self, number: usize) -> std::ops::Range<usize> {
-        let start = if number == 0 { 0 } else { self.ends[number - 1] };
-        start..self.ends[number]
-    }
-
-    /// Lower slot, then higher: ascends along a bucket.
-    #[inline(always)]
-    fn order(&self, at: usize) -> u64 {
-        let (a, b) = (self.a[at], self.b[at]);
-        u64::from(a.min(b)) << 32 | u64::from(a.max(b))
-    }
-
-    fn clear_place(&mut self, at: usize, code: R) {
-        self.code[at] = code;
-        self.geometry.rows_mut()[at] = [R::ZERO; ROW];
-        self.gap.fours_mut()[at] = [R::ZERO; 4];
-        self.impulse.fours_mut()[at] = [R::ZERO; 4];
-        self.color[at] = UNCOLORED;
-    }
-
-    fn take_place(&mut self, at: usize, old: &Self, old_at: usize) {
-        self.code[at] = old.code[old_at];
-        self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];
-        self.gap.fours_mut()[at] = old.gap.fours()[old_at];
-        self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
-        self.color[at] = old.color[old_at];
-    }
-
-    /// The list ends here: makes room for no more than it has, and clears the places that are no pairs.
-    fn close(&mut self) {
-        let pairs = self.ends[5];
-        self.resize(pairs);
-        for at in [pairs, pairs + 1] {
-            (self.a[at], self.b[at]) = (0, 0);
-            self.clear_place(at, R::ZERO);
-        }
-    }
-
-    /// The contact at a place, spelled out.
-    fn contact(&self, at: usize) -> Contact {
-        let (a, b, code) = (self.a[at], self.b[at], Code::of(self.code[at]));
-        let (row, gap, push) = (self.geometry.rows()[at], self.gap.fours()[at], self.impulse.fours()[at]);
-        let value = |k: usize| row[k].to_f64();
-        let point = |k: usize| ContactPoint {
-            arm_a: [value(geometry::ARM_A + 2 * k), value(geometry::ARM_A + 2 * k + 1)],
-            separation: gap[gap::SEPARATION + k].to_f64(),
-            feature: code.feature(k),
-            impulse: push[impulse::NORMAL + k].to_f64(),
-        };
-        let points = (0..code.points()).map(point).collect();
-        let tangent_impulse = push[impulse::TANGENT].to_f64();
-        Contact { a, b, normal: [value(0), value(1)], points, tangent_impulse }
-    }
-
-    fn bytes(&self) -> usize {
-        let columns = self.code.bytes() + self.geometry.bytes() + self.gap.bytes() + self.impulse.bytes();
-        columns + self.a.capacity() * 8 + self.color.capacity()
     }
 }
 

@@ -18,7 +18,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `report`, `cli` (feature `cli`) | experiments, plots, the page; the program `lamina` |
+//! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
@@ -26,7 +26,7 @@
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
 //! | [`island`] | which bodies are at rest together and sleep |
 //! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
-//! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only file that names `wide` |
+//! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only room that names `wide` |
 //!
 //! # One step
 //! | stage | reads | writes |
@@ -105,6 +105,8 @@ pub mod contact;
 pub mod continuous;
 pub mod drive;
 pub mod force;
+#[cfg(feature = "cli")]
+pub mod gate;
 pub mod integrate;
 pub mod island;
 pub mod joint;

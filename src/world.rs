@@ -1,21 +1,21 @@
 //! A world: bodies, joints, fields, and the step that advances them.
 
+mod access;
 mod sleep;
 
 use std::time::Instant;
 
-use crate::body::{Bodies, BodyError, BodyId};
+use crate::body::Bodies;
 use crate::broad::{BroadCounts, BroadPhase};
-use crate::contact::{Contact, Manifolds};
 use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
 use crate::integrate::{self, Motion, Plan, Warm};
 use crate::island::Islands;
-use crate::joint::{JointError, JointId, JointKind, Joints};
+use crate::joint::{JointError, Joints};
 use crate::lanes::{Lanes, Real};
-use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in, state_hash};
+use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in};
 use crate::narrow::{Narrow, Stirred};
-use crate::scene::{BodyKind, BodySpec, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
 use crate::solve::pace::Goal;
 use crate::solve::{self, Solving, Task, Traits};
@@ -412,122 +412,5 @@ impl<L: Lanes> World<L> {
             Some((slot, (column, value))) => stopped(slot, column, value, Stage::Integrate),
             None => stopped(slot, column, value, Stage::Solve),
         }
-    }
-
-    /// Takes a body in. One that is not dynamic wakes all: it may have come where something sleeps.
-    ///
-    /// # Errors
-    /// Those of [`Bodies::insert`].
-    pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
-        let id = self.bodies.insert(spec)?;
-        if spec.kind != BodyKind::Dynamic {
-            self.islands.wake_all();
-        }
-        Ok(id)
-    }
-
-    /// Takes a body out, and the joints it has. Its island wakes, and those that rest on it.
-    ///
-    /// # Errors
-    /// An id whose body is gone.
-    pub fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
-        self.bodies.remove(id)?;
-        if self.settings.sleep {
-            self.wake_what_rested_on(id.slot());
-        }
-        self.joints.prune(&self.bodies);
-        Ok(())
-    }
-
-    /// Joins bodies A and B as they stand; unless they `collide`, they pass through each other from now on.
-    ///
-    /// # Errors
-    /// Those of [`Joints::insert`].
-    pub fn insert_joint(
-        &mut self,
-        bodies: [BodyId; 2],
-        kind: JointKind,
-        collide: bool,
-    ) -> Result<JointId, JointError> {
-        self.joints.insert(&self.bodies, bodies, kind, collide)
-    }
-
-    /// Takes a joint out.
-    ///
-    /// # Errors
-    /// An id whose joint is gone.
-    pub fn remove_joint(&mut self, id: JointId) -> Result<(), JointError> {
-        self.joints.remove(id)
-    }
-
-    /// Adds an impulse and wakes the body's island; see [`Bodies::apply_impulse`].
-    ///
-    /// # Errors
-    /// Those of [`Bodies::apply_impulse`].
-    pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
-        self.motion.swift = true;
-        self.bodies.apply_impulse(id, linear, angular)?;
-        self.islands.wake(id.slot());
-        Ok(())
-    }
-
-    /// The columns.
-    pub fn bodies(&self) -> &Bodies<L::Elem> {
-        &self.bodies
-    }
-    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`]. Wakes all.
-    pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
-        (self.disturbed, self.motion.swift) = (true, true);
-        self.islands.wake_all();
-        &mut self.bodies
-    }
-    /// The joints.
-    pub fn joints(&self) -> &Joints<L::Elem> {
-        &self.joints
-    }
-    /// The fields.
-    pub fn forces(&self) -> &Forces {
-        &self.forces
-    }
-    /// The settings.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-    /// The contacts the last step found at its beginning; gaps and impulses are those of the last time manifolds
-    /// were found anew, see [`World::contacts`].
-    pub fn manifolds(&self) -> &Manifolds<L::Elem> {
-        &self.narrow.manifolds
-    }
-    /// Those contacts, spelled out, with the gaps and impulses of the step's end; those of sleeping bodies too.
-    pub fn contacts(&self) -> Vec<Contact> {
-        self.solving.brought_up_to_date(self.manifolds(), &self.motion).contacts()
-    }
-    /// Colours and constraints of the last step.
-    pub fn solving(&self) -> &Solving<L> {
-        &self.solving
-    }
-    /// Steps taken.
-    pub fn steps(&self) -> u64 {
-        self.steps
-    }
-    /// What the last step counted.
-    pub fn counts(&self) -> &Counts {
-        &self.counts
-    }
-    /// Time per stage since the last [`World::reset_times`].
-    pub fn times(&self) -> &StageTimes {
-        &self.times
-    }
-    /// Sets the stage times to zero.
-    pub fn reset_times(&mut self) {
-        self.times = StageTimes::default();
-    }
-    /// xxh3 over pose and velocity of all living bodies; see [`state_hash`].
-    pub fn hash(&self) -> u64 {
-        state_hash(&self.bodies)
-    }
-    /// The candidate pairs of the last step, of which one body at least is awake: slots a < b, in order.
-    pub fn pairs(&self) -> &[[u32; 2]] {
-        self.broad.pairs()
     }
 }

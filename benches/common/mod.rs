@@ -1,14 +1,12 @@
-//! What both bench files share: the clock's settings, settled scenes, and answers that must agree.
+//! What all benches share: scenes, their settled states, and answers that must agree.
 //!
-//! A bench checks its answer where criterion first calls it, before the clock runs: `cargo test --benches`,
-//! which runs each once, checks all of them.
+//! A workload has one name in all of them, `group/what/bodies/xLANES`: criterion times it ([`crate::kernels`] in
+//! `stages.rs`, [`crate::steps`] in `scenes.rs`), and valgrind counts its instructions (`instructions.rs`).
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::time::Duration;
 
-use criterion::Criterion;
 use lamina2d::lanes::f32s;
 use lamina2d::scene::{Scene, by_name};
 use lamina2d::settings::Settings;
@@ -21,40 +19,47 @@ pub(crate) const SETTLE_STEPS: usize = 600;
 /// Of every scene that draws numbers.
 const SEED: u64 = 1;
 
-/// Samples few and short: some three hundred benches have to fit into a quarter of an hour. The command
-/// line overrides.
-pub(crate) fn criterion() -> Criterion {
-    Criterion::default()
-        .sample_size(20)
-        .warm_up_time(Duration::from_millis(200))
-        .measurement_time(Duration::from_millis(500))
-        .nresamples(10_000)
-        .configure_from_args()
-}
-
 /// The scene of a name like `polygons/150`.
 pub(crate) fn scene(name: &str) -> Scene {
     by_name(name, None, SEED).expect("a scene of the table")
 }
 
-/// Scenes after some steps, each stepped once per process and only when first asked for.
-#[derive(Debug, Default)]
-pub(crate) struct Settled {
-    worlds: RefCell<BTreeMap<String, Rc<World<f32s::X8>>>>,
+/// A scene's world before its first step.
+pub(crate) fn world(name: &str) -> World<f32s::X8> {
+    World::from_scene(&scene(name), Settings::default()).expect("a scene that runs")
 }
 
+/// A scene's world after some steps with default settings.
+pub(crate) fn step_through(name: &str, steps: usize) -> World<f32s::X8> {
+    let mut world = world(name);
+    for _ in 0..steps {
+        world.step(DT_SECS).expect("a scene that stays finite");
+    }
+    world
+}
+
+/// Scenes after some steps, each made once per process and only when first asked for.
+#[derive(Debug)]
+pub(crate) struct Settled {
+    /// Makes the scene of a name after some steps.
+    make: fn(&str, usize) -> World<f32s::X8>,
+    worlds: RefCell<Worlds>,
+}
+
+/// By name and steps.
+type Worlds = BTreeMap<(String, usize), Rc<World<f32s::X8>>>;
+
 impl Settled {
-    /// The scene after `steps` steps with default settings; whoever asks again must ask for as many.
+    /// With what makes a scene of a name after some steps, e.g. [`step_through`].
+    pub(crate) fn new(make: fn(&str, usize) -> World<f32s::X8>) -> Self {
+        Self { make, worlds: RefCell::default() }
+    }
+
+    /// The scene after `steps` steps with default settings.
     pub(crate) fn get(&self, name: &str, steps: usize) -> Rc<World<f32s::X8>> {
         let mut worlds = self.worlds.borrow_mut();
-        let world = worlds.entry(name.to_owned()).or_insert_with(|| {
-            let mut world = World::from_scene(&scene(name), Settings::default()).expect("a scene that runs");
-            for _ in 0..steps {
-                world.step(DT_SECS).expect("a scene that stays finite");
-            }
-            Rc::new(world)
-        });
-        assert_eq!(world.steps(), steps as u64, "{name} was settled with another number of steps");
+        let world =
+            worlds.entry((name.to_owned(), steps)).or_insert_with(|| Rc::new((self.make)(name, steps)));
         Rc::clone(world)
     }
 }
@@ -68,20 +73,20 @@ pub(crate) struct Answer {
     pub(crate) hash: u64,
 }
 
-/// The answer of those benches that must all answer the same: set by the first that runs.
+/// The answers of benches, by what those have in common that must answer the same.
 #[derive(Debug, Default)]
 pub(crate) struct Agreement {
-    first: RefCell<Option<(String, Answer)>>,
+    firsts: RefCell<BTreeMap<String, (String, Answer)>>,
 }
 
 impl Agreement {
-    /// Compares with the first answer.
+    /// Compares with the first answer of those that are `alike`.
     ///
     /// # Panics
     /// Where they differ.
-    pub(crate) fn check(&self, bench: &str, answer: Answer) {
-        let mut first = self.first.borrow_mut();
-        let (other, expected) = first.get_or_insert_with(|| (bench.to_owned(), answer));
+    pub(crate) fn check(&self, alike: &str, bench: &str, answer: Answer) {
+        let mut firsts = self.firsts.borrow_mut();
+        let (other, expected) = firsts.entry(alike.to_owned()).or_insert_with(|| (bench.to_owned(), answer));
         assert_eq!(answer, *expected, "{bench} (left) and {other} (right) disagree");
     }
 }

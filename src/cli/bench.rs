@@ -1,6 +1,7 @@
 //! `lamina bench`: the thesis's performance matrix at every width, beside its engine.
 
 use lamina2d::report::experiments::{broad_phase, matrix};
+use lamina2d::report::{Record, Table};
 use serde_json::json;
 
 use super::output;
@@ -25,43 +26,10 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     if args.json {
         return output::print_json(&json!({"rows": rows, "broad_phase": broad}));
     }
-    let table = rows.iter().map(|row| {
-        vec![
-            row.mix.clone(),
-            row.integrator.clone(),
-            row.bodies.to_string(),
-            row.engine.clone(),
-            row.lanes.to_string(),
-            format!("{:.4}", row.ms_per_step.min),
-            format!("{:.4}", row.ms_per_step.median),
-            row.contacts.to_string(),
-            format!("{:.4}", row.max_penetration),
-            row.hash.clone(),
-        ]
-    });
-    let header = [
-        "mix",
-        "integrator",
-        "bodies",
-        "engine",
-        "lanes",
-        "min ms",
-        "median ms",
-        "contacts",
-        "max pen m",
-        "hash",
-    ];
-    output::print_text(&output::table(&header, table))?;
-    let header = ["engine", "bodies", "on ms", "off ms", "off/on"];
-    let table = broad.iter().map(|row| {
-        vec![
-            row.engine.clone(),
-            row.bodies.to_string(),
-            format!("{:.4}", row.on_ms),
-            format!("{:.4}", row.off_ms),
-            format!("{:.2}", row.off_ms / row.on_ms),
-        ]
-    });
-    output::print_text("\nBroad phase on and off, polygons:")?;
-    output::print_text(&output::table(&header, table))
+    let hashed = rows.iter().map(|row| [row.cells(), vec![row.hash.clone()]].concat());
+    let header: Vec<_> = matrix::Row::HEADER.iter().copied().chain(["hash"]).collect();
+    output::print_text(&output::table(&header, hashed))?;
+    let broad = Table::of(&broad)?;
+    output::print_text(&format!("\n{}, polygons:", broad.title))?;
+    output::print_text(&output::table(broad.header, broad.lines))
 }

@@ -5,6 +5,7 @@
 
 mod bench;
 mod determinism;
+mod gate;
 mod output;
 pub(crate) mod processor;
 mod report;
@@ -34,6 +35,8 @@ enum Command {
     Bench(bench::Args),
     /// Run the thesis's determinism experiment and compare by bits.
     Determinism(determinism::Args),
+    /// Count instructions of kernels and scenes under valgrind and hold them against those blessed.
+    Gate(gate::Args),
     /// Run all experiments into a folder with a page, tables and plots.
     Report(report::Args),
 }
@@ -59,6 +62,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Bench(args) => bench::main(&args),
         Command::Determinism(args) => determinism::main(&args),
+        Command::Gate(args) => gate::main(&args),
         Command::Report(args) => report::main(&args),
     };
     match done {

@@ -1,9 +1,11 @@
-//! `lamina report`: all experiments into a folder.
+//! `lamina report`: all experiments into a folder, some of them into the terminal, or two reports side by side.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use lamina2d::report;
+use lamina2d::gate;
+use lamina2d::report::peers::{self, Peers};
+use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare, instructions};
 
 use super::{output, refuse};
 
@@ -13,21 +15,39 @@ pub(crate) struct Args {
     /// Fewer bodies and repeats: under a minute.
     #[arg(long)]
     quick: bool,
+    /// Run only these experiments, separated by commas, and print their tables; nothing is written.
+    #[arg(long, value_name = "NAME,…", conflicts_with_all = ["out", "publish", "against"])]
+    only: Option<String>,
     /// Where the page, tables and plots go.
     #[arg(long, value_name = "DIR", default_value = "reports/latest")]
     out: PathBuf,
     /// Also refresh the committed copy in reports/.
     #[arg(long)]
     publish: bool,
+    /// Compare with the report in this folder: ratios with the machine's drift taken out.
+    #[arg(long, value_name = "DIR")]
+    against: Option<PathBuf>,
+    /// What lamina-peers measured, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/peers.json")]
+    peers: PathBuf,
+    /// What lamina gate holds, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/instructions.toml")]
+    instructions: PathBuf,
     /// Print a JSON summary.
     #[arg(long)]
     json: bool,
 }
 
 pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
+    if let Some(names) = &args.only {
+        return only(args, &chosen(names).map_err(refuse)?);
+    }
     if args.out.exists() && !args.out.is_dir() {
         return Err(refuse(anyhow::anyhow!("--out: {} is not a folder", args.out.display())));
     }
+    // Read before the first measurement, and before anything is written over it.
+    let before = args.against.as_ref().map(|folder| compare::read(folder)).transpose();
+    let before = before.context("--against").map_err(refuse)?;
     let mut folders = vec![args.out.clone()];
     if args.publish {
         folders.push(PathBuf::from("reports"));
@@ -38,21 +58,84 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
             .with_context(|| format!("--out: cannot write into {}", folder.display()))
             .map_err(refuse)?;
     }
-    let bar = output::progress(report::Data::rounds(args.quick), "report");
-    let data = report::Data::measure(args.quick, &mut |what| {
-        bar.set_message(what);
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
+    let (peers, instructions) = beside(args).map_err(refuse)?;
+    let data = Data { peers, instructions, ..measure(args.quick, EXPERIMENTS)? };
     for folder in &folders {
         report::write(&data, folder)
             .with_context(|| format!("cannot write the report into {}", folder.display()))?;
     }
-    if args.json {
-        return output::print_json(&data.summary());
+    if let (Some(before), Some(folder)) = (before, &args.against) {
+        let comparison = compare::compare(&before, &data, &folder.display().to_string())?;
+        return print_comparison(&comparison, args.json);
     }
-    output::print_text(&report::terminal_summary(&data, output::table))?;
+    if args.json {
+        return output::print_json(&data.summary()?);
+    }
+    let results = Table::of(&data.headlines())?;
+    output::print_text(&output::table(results.header, results.lines))?;
     output::print_text(&format!("\nPage: {}", args.out.join("index.html").display()))
+}
+
+/// What other programs have measured, where their files are.
+fn beside(args: &Args) -> anyhow::Result<(Option<Peers>, Vec<instructions::Row>)> {
+    let peers = args.peers.exists().then(|| peers::read(&args.peers)).transpose()?;
+    let counts = args.instructions.exists().then(|| gate::baseline(&args.instructions)).transpose()?;
+    let last = counts.as_ref().and_then(|counts| counts.baseline.last());
+    Ok((peers, last.map(instructions::rows).unwrap_or_default()))
+}
+
+/// The experiments of a list of names.
+fn chosen(names: &str) -> anyhow::Result<Vec<Experiment>> {
+    let find = |name: &str| {
+        EXPERIMENTS.iter().find(|e| e.name == name).copied().with_context(|| {
+            let choices = EXPERIMENTS.iter().map(|e| e.name).collect::<Vec<_>>().join(", ");
+            format!("--only: unknown experiment '{name}': one of {choices}")
+        })
+    };
+    names.split(',').map(|name| find(name.trim())).collect()
+}
+
+fn measure(quick: bool, experiments: &[Experiment]) -> anyhow::Result<Data> {
+    let bar = output::progress(Data::rounds(quick, experiments), "report");
+    let data = Data::measure(quick, experiments, &mut |what| {
+        bar.set_message(what);
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
+    Ok(data)
+}
+
+fn only(args: &Args, experiments: &[Experiment]) -> anyhow::Result<()> {
+    let data = measure(args.quick, experiments)?;
+    if args.json {
+        return output::print_json(&data.summary()?);
+    }
+    for table in data.tables()? {
+        output::print_text(&format!("{}. {}\n", table.title, table.note))?;
+        output::print_text(&output::table(table.header, table.lines))?;
+        output::print_text("")?;
+    }
+    Ok(())
+}
+
+fn print_comparison(comparison: &compare::Comparison, json: bool) -> anyhow::Result<()> {
+    if json {
+        return output::print_json(comparison);
+    }
+    let (slower, faster) = ["slower", "faster"]
+        .map(|verdict| comparison.rows.iter().filter(|row| row.verdict == verdict).count())
+        .into();
+    output::print_text(&format!(
+        "{} after {}: the machine took {:.2} times as long for {} rows of engines that stayed as they are. Of {} others \
+         {slower} are slower, {faster} faster than that explains.\n",
+        comparison.after,
+        comparison.before,
+        comparison.drift,
+        comparison.controls,
+        comparison.rows.len(),
+    ))?;
+    let cells = comparison.rows.iter().map(Record::cells);
+    output::print_text(&output::table(compare::Row::HEADER, cells))
 }
 
 /// Creates the folder, and a file in it that is taken away again.

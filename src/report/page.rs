@@ -3,392 +3,190 @@
 use askama::Template;
 
 use super::plots::Plot;
-use super::{Data, Headline, Machine, fitted_exponent};
+use super::{Data, Machine, Table};
 
-/// A table as the templates want it.
-struct Table {
+/// A part of the page: what it is about, then its plots and tables.
+struct Group {
     title: &'static str,
-    command: &'static str,
-    note: &'static str,
-    header: Vec<&'static str>,
-    rows: Vec<Vec<String>>,
+    intro: &'static str,
+    /// File names.
+    plots: &'static [&'static str],
+    /// Names.
+    tables: &'static [&'static str],
+}
+
+/// The order of the page. What has nothing to show is left out.
+const GROUPS: &[Group] = &[
+    Group {
+        title: "Results",
+        intro: "The same scenes on the same machine in the same run, beside the engine this one started from.",
+        plots: &["times_faster.svg", "time_against_bodies.svg"],
+        tables: &["results"],
+    },
+    Group {
+        title: "Run time against error",
+        intro: "What an error costs: substeps buy stiffness. Down and to the left is better.",
+        plots: &["peers_time_against_overlap.svg", "peers_time_against_sag.svg", "time_against_overlap.svg"],
+        tables: &["stability"],
+    },
+    Group {
+        title: "Peers",
+        intro: "Box2D v3 and rapier on the library's own scenes, body for body, in alternating windows of one process; \
+                the same f64 code measures every engine's overlaps and errors.",
+        plots: &["peers_times_faster.svg"],
+        tables: &["peers", "peer_rows"],
+    },
+    Group {
+        title: "The thesis's experiments",
+        intro: "Performance by mix and integrator, complexity, broad phase on and off, determinism.",
+        plots: &["mix_by_integrator.svg", "broad_on_off.svg"],
+        tables: &["matrix", "broad_phase", "determinism"],
+    },
+    Group {
+        title: "Where a step goes",
+        intro: "Stages of the default step, and what lanes do for each kernel.",
+        plots: &["stages.svg", "lanes.svg"],
+        tables: &["contacts", "lanes"],
+    },
+    Group {
+        title: "What is left out",
+        intro: "Work a scene does not need: each skip on and off, and piles that sleep.",
+        plots: &[],
+        tables: &["skips", "sleep"],
+    },
+    Group {
+        title: "Instructions",
+        intro: "Counted by callgrind, repeatable to the instruction, held by a gate in every check-in.",
+        plots: &[],
+        tables: &["instructions"],
+    },
+    Group {
+        title: "Limits",
+        intro: "What the machine could do at most, measured in the same run, and the stages' share of it.",
+        plots: &[],
+        tables: &["limit_shares", "limits", "flight"],
+    },
+];
+
+/// A group with what it shows.
+struct Section<'a> {
+    title: &'static str,
+    /// Of its heading, for links.
+    anchor: String,
+    intro: &'static str,
+    plots: Vec<Drawing<'a>>,
+    tables: Vec<&'a Table>,
+}
+
+/// A plot as the page embeds it.
+struct Drawing<'a> {
+    plot: &'a Plot,
+    /// In the page's colours: paper and ink follow the reader's scheme.
+    svg: String,
+}
+
+/// Everything the templates want.
+pub(super) struct Page<'a> {
+    data: &'a Data,
+    features: String,
+    headlines: Vec<String>,
+    sections: Vec<Section<'a>>,
 }
 
 #[derive(Template)]
 #[template(path = "page.html", config = "src/report/askama.toml")]
 struct Html<'a> {
+    page: &'a Page<'a>,
     machine: &'a Machine,
-    features: String,
-    quick: bool,
-    tables: Vec<Table>,
-    plots: &'a [Plot],
 }
 
 #[derive(Template)]
 #[template(path = "summary.md", config = "src/report/askama.toml", escape = "none")]
 struct Markdown<'a> {
+    page: &'a Page<'a>,
     machine: &'a Machine,
-    features: String,
-    quick: bool,
-    tables: Vec<Table>,
 }
 
-/// The page, self-contained.
-pub(super) fn html(data: &Data, plots: &[Plot]) -> anyhow::Result<String> {
-    let features = data.machine.features.join(", ");
-    Ok(Html { machine: &data.machine, features, quick: data.quick, tables: tables(data), plots }.render()?)
-}
-
-/// The summary.
-pub(super) fn markdown(data: &Data) -> anyhow::Result<String> {
-    let features = data.machine.features.join(", ");
-    Ok(Markdown { machine: &data.machine, features, quick: data.quick, tables: tables(data) }.render()?)
-}
-
-/// Header and rows of the result table.
-pub(super) fn result_table(data: &Data) -> (Vec<&'static str>, Vec<Vec<String>>) {
-    let table = results(data);
-    (table.header, table.rows)
-}
-
-fn tables(data: &Data) -> Vec<Table> {
-    vec![
-        results(data),
-        matrix(data),
-        broad_phase(data),
-        determinism(data),
-        lanes(data),
-        contacts(data),
-        stability(data),
-        sleep(data),
-        skips(data),
-        flight(data),
-    ]
-}
-
-fn times(ratio: Option<f64>) -> String {
-    ratio.map_or_else(|| "–".to_owned(), |r| format!("{r:.1}×"))
-}
-
-fn results(data: &Data) -> Table {
-    let row = |h: &Headline| {
-        vec![
-            h.mix.clone(),
-            h.bodies.to_string(),
-            h.substeps.to_string(),
-            format!("{:.4}", h.ms),
-            times(h.times_thesis),
-            times(h.times_tidy),
-            h.contacts.to_string(),
-            format!("{:.1}", h.mean_penetration * 1e3),
-            h.thesis_mean_penetration.map_or_else(|| "–".to_owned(), |m| format!("{:.1}", m * 1e3)),
-        ]
-    };
-    Table {
-        title: "Against the thesis engine",
-        command: "lamina bench",
-        note: "Settled, one thread, 8 lanes, default settings with 4 and with 2 substeps, beside the baselines with \
-               their Euler and 1 substep; medians of alternating windows in one run. Speed counts only beside the \
-               overlap it costs: the last two columns.",
-        header: vec![
-            "mix",
-            "bodies",
-            "substeps",
-            "ms per step",
-            "vs thesis",
-            "vs tidy",
-            "contacts",
-            "mean overlap mm",
-            "thesis overlap mm",
-        ],
-        rows: data.headlines().iter().map(row).collect(),
-    }
-}
-
-fn matrix(data: &Data) -> Table {
-    let row = |r: &super::matrix::Row| {
-        vec![
-            r.mix.clone(),
-            r.integrator.clone(),
-            r.bodies.to_string(),
-            r.engine.clone(),
-            r.lanes.to_string(),
-            r.substeps.to_string(),
-            format!("{:.4}", r.ms_per_step.min),
-            format!("{:.4}", r.ms_per_step.median),
-            format!("{:.4}", r.ms_per_step.p99),
-            r.contacts.to_string(),
-            format!("{:.3}", r.max_penetration),
-        ]
-    };
-    Table {
-        title: "Performance: shape mix × integrator",
-        command: "lamina bench",
-        note: "The thesis's performance and complexity experiments: settled bodies, every step timed. \
-               Lane widths of one integrator must end in the same bits, or the bench fails.",
-        header: vec![
-            "mix",
-            "integrator",
-            "bodies",
-            "engine",
-            "lanes",
-            "substeps",
-            "min ms",
-            "median ms",
-            "p99 ms",
-            "contacts",
-            "max overlap m",
-        ],
-        rows: data.matrix.iter().map(row).collect(),
-    }
-}
-
-fn broad_phase(data: &Data) -> Table {
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    for engine in ["lamina2d", "tidy", "thesis"] {
-        let own: Vec<_> = data.broad_phase.iter().filter(|r| r.engine == engine).collect();
-        for row in &own {
-            rows.push(vec![
-                engine.to_owned(),
-                row.bodies.to_string(),
-                format!("{:.4}", row.on_ms),
-                format!("{:.4}", row.off_ms),
-                format!("{:.2}", row.off_ms / row.on_ms),
-            ]);
-        }
-        let exponent = |time: fn(&super::broad_phase::Row) -> f64| {
-            let points: Vec<_> = own.iter().map(|r| (r.bodies as f64, time(r))).collect();
-            fitted_exponent(&points).map_or_else(String::new, |p| format!("N^{p:.2}"))
+impl<'a> Page<'a> {
+    /// Sorts tables and plots into groups.
+    pub(super) fn new(data: &'a Data, tables: &'a [Table], plots: &'a [Plot]) -> Self {
+        let section = |group: &Group| {
+            let drawing = |plot| Drawing { plot, svg: in_page_colors(&plot.svg) };
+            let plots = group.plots.iter().filter_map(|file| plots.iter().find(|p| p.file == *file));
+            Section {
+                title: group.title,
+                anchor: group.title.to_lowercase().replace([' ', '\''], "-"),
+                intro: group.intro,
+                plots: plots.map(drawing).collect(),
+                tables: group
+                    .tables
+                    .iter()
+                    .filter_map(|name| tables.iter().find(|t| t.name == *name))
+                    .collect(),
+            }
         };
-        let (on, off) = (exponent(|r| r.on_ms), exponent(|r| r.off_ms));
-        rows.push(vec![engine.to_owned(), "fitted".to_owned(), on, off, String::new()]);
+        let sections = GROUPS.iter().map(section).filter(|s| !(s.plots.is_empty() && s.tables.is_empty()));
+        Self {
+            data,
+            features: data.machine.features.join(", "),
+            headlines: sentences(data),
+            sections: sections.collect(),
+        }
     }
-    Table {
-        title: "Broad phase on and off",
-        command: "lamina bench",
-        note: "Polygons. On and off must end in the same state, or the bench fails.",
-        header: vec!["engine", "bodies", "on ms", "off ms", "off/on"],
-        rows,
+
+    /// The page, self-contained.
+    pub(super) fn html(&self) -> anyhow::Result<String> {
+        Ok(Html { page: self, machine: &self.data.machine }.render()?)
+    }
+
+    /// The summary.
+    pub(super) fn markdown(&self) -> anyhow::Result<String> {
+        Ok(Markdown { page: self, machine: &self.data.machine }.render()?)
     }
 }
 
-fn determinism(data: &Data) -> Table {
-    let row = |r: &super::determinism::Row| {
-        vec![
-            r.engine.clone(),
-            r.integrator.clone(),
-            r.stepping.to_string(),
-            r.seconds.to_string(),
-            if r.identical { "yes" } else { "no" }.to_owned(),
-            format!("{:.2e}", r.max_apart_m),
-            r.from_semi_implicit_m.map_or_else(|| "–".to_owned(), |d| format!("{d:.2e}")),
-        ]
-    };
-    Table {
-        title: "Determinism: two runs",
-        command: "lamina determinism",
-        note: "Six bodies. A frame lasts 1/60 s plus what this machine took for it, so variable steps never repeat.",
-        header: vec![
-            "engine",
-            "integrator",
-            "step",
-            "seconds",
-            "same bits",
-            "max apart m",
-            "from semi-implicit m",
-        ],
-        rows: data.determinism.iter().map(row).collect(),
-    }
+/// White becomes the page's paper and black its ink, so that a plot can be read on a dark page too.
+fn in_page_colors(svg: &str) -> String {
+    svg.replace("\"#FFFFFF\"", "\"var(--paper)\"").replace("\"#000000\"", "\"currentColor\"")
 }
 
-fn lanes(data: &Data) -> Table {
-    let row = |r: &super::lanes::Row| {
-        vec![
-            r.kernel.to_owned(),
-            r.scene.to_owned(),
-            r.lanes.to_string(),
-            r.elements.to_string(),
-            format!("{:.3}", r.ns_per_element),
-            format!("{:.2}×", r.speed_up),
-        ]
+/// The headline ratios, each a sentence with the error it is had at.
+fn sentences(data: &Data) -> Vec<String> {
+    let headlines = data.headlines();
+    let sentence = |mix: &str, bodies: usize, substeps: u32| {
+        let row = headlines.iter().find(|h| h.mix == mix && h.bodies == bodies && h.substeps == substeps)?;
+        let (thesis, tidy) = (row.times_thesis?, row.times_tidy?);
+        let (ours, theirs) = (row.mean_penetration * 1e3, row.thesis_mean_penetration? * 1e3);
+        Some(format!(
+            "{bodies} {mix} at {substeps} substeps: {thesis:.1}× as fast as the thesis engine, {tidy:.1}× as its tidy \
+             version; bodies overlap by {ours:.1} mm on average, the thesis's by {theirs:.1} mm."
+        ))
     };
-    Table {
-        title: "Lanes",
-        command: "lamina report",
-        note: "Each kernel alone on the same settled bodies; an element is a pair tested, a pair collided, a body advanced.",
-        header: vec!["kernel", "scene", "lanes", "elements", "ns per element", "over 1 lane"],
-        rows: data.lanes.iter().map(row).collect(),
+    let sizes = [150, 1000, 10_000];
+    let ours = sizes.iter().flat_map(|&bodies| [2, 4].map(|substeps| sentence("polygons", bodies, substeps)));
+    let mut all: Vec<String> = ours.flatten().collect();
+    let scenes = data.peers.as_ref().map(super::peers::Peers::scenes).unwrap_or_default();
+    for wanted in ["polygons/150", "polygons/1000", "polygons/10000", "pyramid/100"] {
+        let scene = scenes.iter().find(|s| s.scene == wanted && s.threads == 1 && !s.sleep);
+        all.extend(scene.and_then(beside_peers));
     }
+    all
 }
 
-fn contacts(data: &Data) -> Table {
-    let row = |r: &super::contacts::Row| {
-        let mut cells = vec![
-            r.scene.to_owned(),
-            r.lanes.to_string(),
-            r.bodies.to_string(),
-            r.contacts.to_string(),
-            format!("{:.4}", r.ms_per_step),
-            format!("{:.2}", r.ns_per_contact_and_pass),
-            format!("{:.2}×", r.solve_speed_up),
-            r.bytes_per_contact.map(|bytes| bytes.to_string()).join(" / "),
-        ];
-        cells.extend(r.shares.map(|share| format!("{:.0} %", share * 100.0)));
-        cells
-    };
-    Table {
-        title: "Contacts: where a step goes",
-        command: "lamina report",
-        note: "Settled piles with `soft`, 4 substeps of two passes. Bytes: what a pass streams of a two-point and a \
-               one-point contact, its bodies' rows not counted.",
-        header: vec![
-            "scene",
-            "lanes",
-            "bodies",
-            "contacts",
-            "ms per step",
-            "ns per contact and pass",
-            "solve over 1 lane",
-            "bytes",
-            "broad",
-            "narrow",
-            "prepare",
-            "integrate",
-            "solve",
-            "measure",
-        ],
-        rows: data.contacts.iter().map(row).collect(),
-    }
+/// One scene beside the peers, in a sentence.
+fn beside_peers(scene: &super::peers::Scene) -> Option<String> {
+    let [box2d, rapier] = scene.times_faster();
+    let [ours, theirs, last] = scene.mean_penetration.map(|m| m.map(|m| m * 1e3));
+    Some(format!(
+        "`{}`, all with 4 substeps: {:.1}× as fast as Box2D, {:.1}× as rapier; bodies overlap by {:.2} mm on average, \
+         theirs by {:.2} and {:.2} mm.",
+        scene.scene, box2d?, rapier?, ours?, theirs?, last?
+    ))
 }
 
-fn stability(data: &Data) -> Table {
-    let row = |r: &super::stability::Row| {
-        vec![
-            r.scene.to_owned(),
-            r.solver.to_string(),
-            r.substeps.to_string(),
-            r.seconds.to_string(),
-            format!("{:.4}", r.ms_per_step),
-            format!("{:.2}", r.max_penetration * 1e3),
-            format!("{:.2}", r.mean_penetration * 1e3),
-            format!("{:.1e}", r.rms_speed),
-            format!("{:.3}", r.moved),
-            format!("{:.4}", r.drift),
-            r.failed.clone().unwrap_or_else(|| "–".to_owned()),
-        ]
-    };
-    Table {
-        title: "Stability: run time against error",
-        command: "lamina report",
-        note: "Piles left to stand. Moved: the farthest any body is from where it began, which is what it has sunk; \
-               a body's size or more says that it fell. Drift: since half the time. `avbd` visits contacts ten times per \
-               substep, `pgs` eight times, `soft` and `xpbd` twice. `sag`: substeps per island (`--max-sag`).",
-        header: vec![
-            "scene",
-            "solver",
-            "substeps",
-            "seconds",
-            "ms per step",
-            "max overlap mm",
-            "mean overlap mm",
-            "rms speed m/s",
-            "moved m",
-            "drift m",
-            "broke off",
-        ],
-        rows: data.stability.iter().map(row).collect(),
-    }
-}
-
-fn sleep(data: &Data) -> Table {
-    let row = |r: &super::sleep::Row| {
-        vec![
-            r.scene.to_owned(),
-            r.substeps.to_string(),
-            r.bodies.to_string(),
-            r.slept_after.map_or_else(|| "–".to_owned(), |steps| steps.to_string()),
-            format!("{:.4}", r.awake_ms),
-            format!("{:.5}", r.asleep_ms),
-            format!("{:.3} %", r.share * 100.0),
-            format!("{:.2}", r.beside_us),
-            format!("{:.2}", r.alone_us),
-            format!("{:.2}", r.ns_per_sleeper),
-        ]
-    };
-    Table {
-        title: "Sleep",
-        command: "lamina report",
-        note: "Piles with sleep on: a step awake, a step when all sleep, and a step in which one other body flies by \
-               at 50 m/s, which finds its pairs anew in every step: beside the pile and without it.",
-        header: vec![
-            "scene",
-            "substeps",
-            "bodies",
-            "asleep after steps",
-            "awake ms",
-            "asleep ms",
-            "asleep / awake",
-            "beside a flier µs",
-            "flier alone µs",
-            "ns per sleeper",
-        ],
-        rows: data.sleep.iter().map(row).collect(),
-    }
-}
-
-fn skips(data: &Data) -> Table {
-    let row = |r: &super::skips::Row| {
-        vec![
-            r.scene.to_owned(),
-            r.integrator.to_string(),
-            r.skip.to_owned(),
-            format!("{:.4}", r.on_ms),
-            format!("{:.4}", r.off_ms),
-            format!("{:.1} %", r.saved * 100.0),
-            if r.same_hash { "yes" } else { "no" }.to_owned(),
-            r.spared.to_string(),
-            r.max_penetration_m.map(|m| format!("{:.3}", m * 1e3)).join(" / "),
-            r.kinetic_energy_j.map(|j| format!("{j:.1e}")).join(" / "),
-        ]
-    };
-    Table {
-        title: "Skips",
-        command: "lamina report",
-        note: "All exact skips on, against all but one, and against none (exact); reused manifolds on top of all, \
-               against without. Overlap and energy: on / off.",
-        header: vec![
-            "scene",
-            "integrator",
-            "skip off",
-            "on ms",
-            "off ms",
-            "saved",
-            "same bits",
-            "spared",
-            "max overlap mm",
-            "kinetic energy J",
-        ],
-        rows: data.skips.iter().map(row).collect(),
-    }
-}
-
-fn flight(data: &Data) -> Table {
-    let row = |r: &super::flight::Row| {
-        vec![
-            r.bodies.to_string(),
-            r.integrator.to_string(),
-            format!("{:.3}", r.ns_per_body),
-            r.bytes_per_body.to_string(),
-            format!("{:.1}", r.gb_per_s),
-            format!("{:.1}", r.copy_gb_per_s),
-            format!("{:.0} %", r.share * 100.0),
-        ]
-    };
-    Table {
-        title: "Free flight against copy bandwidth",
-        command: "lamina report",
-        note: "The integration pass alone, 8 lanes, beside a copy that reads and writes as many bytes in the same run.",
-        header: vec!["bodies", "integrator", "ns per body", "bytes per body", "GB/s", "copy GB/s", "share"],
-        rows: data.flight.iter().map(row).collect(),
-    }
+/// HTML of a text in which backticks mark code.
+fn marked(text: &str) -> String {
+    let safe = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let code = |(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { String::from(part) };
+    safe.split('`').enumerate().map(code).collect()
 }

@@ -1,12 +1,13 @@
 //! SVG plots of a report's rows.
 
-use std::ops::Range;
+mod chart;
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use chart::{Series, Slope, bars, heat_map, log_log, stacked};
 
-use super::experiments::{broad_phase, matrix, stability};
+use super::experiments::{broad_phase, contacts, matrix, stability};
+use super::peers::{self, Peers};
 use super::{Data, fitted_exponent};
+use crate::measure::Stage;
 use crate::settings::Solver;
 
 /// One drawing.
@@ -22,161 +23,23 @@ pub(super) struct Plot {
     pub(super) svg: String,
 }
 
-const SIZE: (u32, u32) = (760, 460);
-/// Distinct for the common kinds of colour blindness (Okabe and Ito, 2008).
-const PALETTE: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-];
-
-struct Series {
-    name: String,
-    points: Vec<(f64, f64)>,
-}
-
-/// All plots of a report.
+/// All plots of a report that have something to show.
 pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
-    Ok(vec![
-        time_against_bodies(data)?,
-        time_against_overlap(data)?,
-        broad_on_off(data)?,
-        lanes_speed_up(data)?,
-        times_faster(data)?,
-    ])
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Draws into a string; plotters' errors borrow the drawing, so they become text here.
-fn to_svg(draw: impl Fn(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<String> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        plot(area.fill(&WHITE))?;
-        draw(&area)?;
-        plot(area.present())?;
-    }
-    Ok(svg)
-}
-
-fn plot<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
-    result.map_err(|e| anyhow::anyhow!("plot: {e}"))
-}
-
-/// A range that holds all values, widened a little, for a logarithmic axis.
-fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-    low * 0.7..high * 1.4
-}
-
-/// Where lines leave room for their names: they rise or fall.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Slope {
-    Up,
-    Down,
-}
-
-fn log_log(
-    title: &str,
-    [x_label, y_label]: [&str; 2],
-    series: &[Series],
-    slope: Slope,
-) -> anyhow::Result<String> {
-    let xs = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.0)));
-    let ys = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
-    to_svg(|area| {
-        let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(70)
-                .build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale()),
-        )?;
-        plot(
-            chart
-                .configure_mesh()
-                .x_desc(x_label)
-                .y_desc(y_label)
-                .x_label_formatter(&|v| format!("{v}"))
-                .y_label_formatter(&|v| short(*v))
-                .light_line_style(WHITE)
-                .draw(),
-        )?;
-        for (k, series) in series.iter().enumerate() {
-            let color = PALETTE[k % PALETTE.len()];
-            let line = LineSeries::new(series.points.iter().copied(), color.stroke_width(2)).point_size(4);
-            plot(chart.draw_series(line))?
-                .label(&series.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
-        }
-        plot(
-            chart
-                .configure_series_labels()
-                .position(match slope {
-                    Slope::Up => SeriesLabelPosition::UpperLeft,
-                    Slope::Down => SeriesLabelPosition::UpperRight,
-                })
-                .background_style(WHITE.mix(0.85))
-                .border_style(BLACK.mix(0.3))
-                .draw(),
-        )
-    })
-}
-
-/// Groups of bars: for each label one bar per series.
-fn bars(title: &str, y_label: &str, labels: &[String], series: &[Series]) -> anyhow::Result<String> {
-    let top = series.iter().flat_map(|s| s.points.iter().map(|p| p.1)).fold(0.0, f64::max) * 1.15;
-    let groups = labels.len();
-    to_svg(|area| {
-        let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(60)
-                .build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top),
-        )?;
-        let label = |x: &f64| {
-            let at = x.round();
-            let name = labels.get(at as usize).filter(|_| (x - at).abs() < 0.01 && at >= 0.0);
-            name.cloned().unwrap_or_default()
-        };
-        let mesh = &mut chart.configure_mesh();
-        plot(
-            mesh.disable_x_mesh().x_labels(groups * 2 + 1).x_label_formatter(&label).y_desc(y_label).draw(),
-        )?;
-        let width = 0.8 / series.len() as f64;
-        for (k, series) in series.iter().enumerate() {
-            let color = PALETTE[k % PALETTE.len()];
-            let left = |x: f64| x - 0.4 + width * k as f64;
-            let bar = |&(x, y): &(f64, f64)| {
-                Rectangle::new([(left(x), 0.0), (left(x) + width * 0.9, y)], color.filled())
-            };
-            plot(chart.draw_series(series.points.iter().map(bar)))?
-                .label(&series.name)
-                .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 12, y + 5)], color.filled()));
-        }
-        plot(
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::UpperRight)
-                .background_style(WHITE.mix(0.85))
-                .border_style(BLACK.mix(0.3))
-                .draw(),
-        )
-    })
-}
-
-/// Three significant digits without trailing zeros.
-fn short(value: f64) -> String {
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 8) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    type Draw = fn(&Data) -> anyhow::Result<Plot>;
+    let peers = data.peers.is_some();
+    let all: [(bool, Draw); 10] = [
+        (peers, peers_times_faster),
+        (peers, |data| peers_sweep(data, &OVERLAP)),
+        (peers, |data| peers_sweep(data, &SAG)),
+        (!data.matrix.is_empty(), times_faster),
+        (!data.matrix.is_empty(), time_against_bodies),
+        (!data.matrix.is_empty(), mix_by_integrator),
+        (!data.stability.is_empty(), time_against_overlap),
+        (!data.broad_phase.is_empty(), broad_on_off),
+        (!data.contacts.is_empty(), stages),
+        (!data.lanes.is_empty(), lanes_speed_up),
+    ];
+    all.into_iter().filter(|(has_rows, _)| *has_rows).map(|(_, draw)| draw(data)).collect()
 }
 
 fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
@@ -199,7 +62,7 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
         file: "time_against_bodies.svg",
         about: "Median time per step against the number of polygons, both logarithmic, with fitted exponents"
             .to_owned(),
-        command: "lamina bench",
+        command: "lamina report --only matrix",
         svg: log_log("Polygons, settled: time per step", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
@@ -221,7 +84,7 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
         about:
             "Largest overlap of a stack of ten boxes against the median time per step, by solver and substeps"
                 .to_owned(),
-        command: "lamina report",
+        command: "lamina report --only stability",
         svg: log_log(
             "Ten boxes at rest: error against run time",
             ["ms per step", "largest overlap mm"],
@@ -246,7 +109,7 @@ fn broad_on_off(data: &Data) -> anyhow::Result<Plot> {
     Ok(Plot {
         file: "broad_on_off.svg",
         about: "Median time per step with the broad phase on and off, 60 to 200 polygons".to_owned(),
-        command: "lamina bench",
+        command: "lamina report --only broad_phase",
         svg: log_log("Polygons: broad phase on and off", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
@@ -268,7 +131,7 @@ fn lanes_speed_up(data: &Data) -> anyhow::Result<Plot> {
     Ok(Plot {
         file: "lanes.svg",
         about: "How many times faster than one lane each kernel runs at 4, 8 and 16 lanes".to_owned(),
-        command: "lamina report",
+        command: "lamina report --only lanes",
         svg: bars("Kernels: speed-up over one lane", "times faster", &kernels, &series)?,
     })
 }
@@ -291,7 +154,142 @@ fn times_faster(data: &Data) -> anyhow::Result<Plot> {
     Ok(Plot {
         file: "times_faster.svg",
         about: format!("How many times faster than the thesis engine each mix of {smallest} bodies runs"),
-        command: "lamina bench",
+        command: "lamina report --only matrix",
         svg: bars(&format!("{smallest} bodies, settled: times faster"), "times faster", &labels, &series)?,
+    })
+}
+
+/// Microseconds of one step of the thesis's number of bodies: integrator by integrator, mix by mix.
+fn mix_by_integrator(data: &Data) -> anyhow::Result<Plot> {
+    let smallest = data.matrix.iter().map(|r| r.bodies).min().unwrap_or(0);
+    let wanted =
+        |r: &&matrix::Row| r.engine == "lamina2d" && r.lanes == 8 && r.bodies == smallest && r.substeps != 2;
+    let rows: Vec<_> = data.matrix.iter().filter(wanted).collect();
+    let names = |of: fn(&matrix::Row) -> &String| {
+        let mut names: Vec<String> = Vec::new();
+        for row in &rows {
+            if !names.contains(of(row)) {
+                names.push(of(row).clone());
+            }
+        }
+        names
+    };
+    let (mixes, integrators) = (names(|r| &r.mix), names(|r| &r.integrator));
+    let cell = |mix: &String, integrator: &String| {
+        let row = rows.iter().find(|r| r.mix == *mix && r.integrator == *integrator);
+        row.map_or(f64::NAN, |r| r.ms_per_step.median * 1e3)
+    };
+    let values: Vec<Vec<f64>> =
+        integrators.iter().map(|i| mixes.iter().map(|m| cell(m, i)).collect()).collect();
+    Ok(Plot {
+        file: "mix_by_integrator.svg",
+        about: format!("Median µs per step of {smallest} bodies, by shape mix and integrator, 8 lanes"),
+        command: "lamina report --only matrix",
+        svg: heat_map(&format!("{smallest} bodies, settled: µs per step"), &mixes, &integrators, &values)?,
+    })
+}
+
+/// Where a step of a thousand settled bodies goes.
+fn stages(data: &Data) -> anyhow::Result<Plot> {
+    let rows: Vec<_> = data.contacts.iter().filter(|r| r.lanes == 8 && r.bodies == 1000).collect();
+    let labels: Vec<_> =
+        rows.iter().map(|r| r.scene.split('/').next().unwrap_or_default().to_owned()).collect();
+    let of = |stage: &Stage| {
+        let height = |r: &&contacts::Row| r.ms_per_step * 1e3 * r.shares[*stage as usize];
+        let points = rows.iter().enumerate().map(|(k, r)| (k as f64, height(r))).collect();
+        Series { name: stage.name().to_owned(), points }
+    };
+    Ok(Plot {
+        file: "stages.svg",
+        about: "Median µs per step of 1000 settled bodies, by stage, default settings, 8 lanes".to_owned(),
+        command: "lamina report --only contacts",
+        svg: stacked(
+            "1000 bodies, settled: where a step goes",
+            "µs per step",
+            &labels,
+            &Stage::ALL.map(|s| of(&s)),
+        )?,
+    })
+}
+
+/// Scenes of the bars beside the peers: what there is of them.
+const PEER_SCENES: [&str; 10] = [
+    "circles/1000",
+    "polygons/150",
+    "polygons/1000",
+    "polygons/10000",
+    "all/10000",
+    "pyramid/100",
+    "tumbler/2000",
+    "joint_grid/60",
+    "rain/1000",
+    "free_flight/100000",
+];
+
+fn peers_times_faster(data: &Data) -> anyhow::Result<Plot> {
+    let scenes = data.peers.as_ref().map(Peers::scenes).unwrap_or_default();
+    let find = |name: &&str| scenes.iter().find(|s| s.scene == **name && s.threads == 1 && !s.sleep);
+    let shown: Vec<_> = PEER_SCENES.iter().filter_map(find).collect();
+    let labels: Vec<_> = shown.iter().map(|s| s.scene.replace("000", "k").replace("kk", "M")).collect();
+    let series = ["Box2D", "rapier"].into_iter().enumerate().map(|(peer, name)| {
+        let height = |s: &&peers::Scene| s.times_faster()[peer].unwrap_or(0.0);
+        let points = shown.iter().enumerate().map(|(k, s)| (k as f64, height(s))).collect();
+        Series { name: format!("against {name}"), points }
+    });
+    let series: Vec<_> = series.collect();
+    Ok(Plot {
+        file: "peers_times_faster.svg",
+        about:
+            "How many times faster than Box2D and rapier each scene runs, all with 4 substeps, one thread, \
+                sleeping off"
+                .to_owned(),
+        command: "cargo run --release -p lamina-peers",
+        svg: bars("4 substeps, one thread: times faster", "times faster", &labels, &series)?,
+    })
+}
+
+/// A sweep over substeps, all engines in one diagram.
+struct Sweep {
+    scene: &'static str,
+    file: &'static str,
+    title: &'static str,
+    error: &'static str,
+    /// Millimetres.
+    of: fn(&peers::Row) -> Option<f64>,
+}
+
+const OVERLAP: Sweep = Sweep {
+    scene: "polygons/1000",
+    file: "peers_time_against_overlap.svg",
+    title: "1000 polygons, 1 to 16 substeps: error against run time",
+    error: "mean overlap mm",
+    of: |row| row.mean_penetration,
+};
+const SAG: Sweep = Sweep {
+    scene: "pyramid/30",
+    file: "peers_time_against_sag.svg",
+    title: "Pyramid of 465 boxes, 1 to 16 substeps: error against run time",
+    error: "top has sunk mm",
+    of: |row| row.sunk,
+};
+
+fn peers_sweep(data: &Data, sweep: &Sweep) -> anyhow::Result<Plot> {
+    let of = |engine: &str| {
+        let rows = data.peers.as_ref().map(|p| p.sweep(sweep.scene, engine)).unwrap_or_default();
+        let point = |row: &&peers::Row| {
+            let error = (sweep.of)(row)?.abs().max(1e-7) * 1e3;
+            Some((row.ms_per_step.median, error))
+        };
+        Series { name: engine.to_owned(), points: rows.iter().filter_map(point).collect() }
+    };
+    let series = Peers::ENGINES.map(of);
+    Ok(Plot {
+        file: sweep.file,
+        about: format!(
+            "{}: {} against the median time per step, each engine with 1, 2, 4, 8 and 16 substeps or iterations",
+            sweep.scene, sweep.error
+        ),
+        command: "cargo run --release -p lamina-peers",
+        svg: log_log(sweep.title, ["ms per step", sweep.error], &series, Slope::Down)?,
     })
 }

@@ -34,6 +34,11 @@ pub fn median(samples: &[f64]) -> f64 {
     Data::new(samples.to_vec()).median()
 }
 
+/// What so large a share of the samples does not exceed; NaN where there are none.
+pub(super) fn quantile(samples: &[f64], share: f64) -> f64 {
+    Data::new(samples.to_vec()).quantile(share)
+}
+
 /// The exponent p of y ∝ xᵖ, by least squares on logarithms; `None` below two points.
 pub fn fitted_exponent(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();

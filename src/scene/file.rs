@@ -1,4 +1,49 @@
 //! Scene files: TOML in, a [`Scene`] and settings out; unknown keys are refused.
+//!
+//! Metres, kilograms, seconds, radians, y up:
+//! ```
+//! let text = r#"
+//! about = "a box and a triangle on a slope, with some wind"
+//!
+//! [settings]
+//! steps = 300
+//! integrator = "velocity_verlet"
+//!
+//! [forces]
+//! gravity = [0.0, -9.81]
+//! wind = [2.0, 0.0]
+//! linear_drag = 0.1
+//!
+//! [[body]]
+//! kind = "static"
+//! shape = { box = [10.0, 0.5] }
+//! position = [0.0, -0.5]
+//! angle = 0.2
+//!
+//! [[body]]
+//! shape = { box = [0.5, 0.5] }
+//! position = [0.0, 1.5]
+//! density = 2.0
+//! friction = 0.6
+//!
+//! [[body]]
+//! shape = { polygon = [[-0.5, -0.4], [0.5, -0.4], [0.0, 0.6]] }
+//! position = [2.0, 3.0]
+//! mass = 1.0
+//! restitution = 0.3
+//! velocity = [-1.0, 0.0]
+//!
+//! [[joint]]                                # bodies by their number, from 0; anchors in the world
+//! bodies = [1, 2]
+//! kind = { distance = { spring = { hertz = 2.0, damping = 0.3 }, max = 4.0 } }
+//! # kind = { revolute = { anchor = [0, 1], motor = { speed = 2, max_torque = 5 }, limits = { lower = -1, upper = 1 } } }
+//! # kind = { weld = { anchor = [0, 1] } }
+//! # collide = true                         # else the two pass through each other
+//! "#;
+//! let (scene, settings) = lamina2d::scene::file::parse("slope.toml", text)?;
+//! assert_eq!((scene.bodies.len(), scene.joints.len()), (3, 1));
+//! # Ok::<(), lamina2d::scene::SceneError>(())
+//! ```
 
 use serde::Deserialize;
 

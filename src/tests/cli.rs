@@ -307,9 +307,48 @@ fn the_long_commands_print_one_json_document_and_the_report_leaves_its_files() {
     let out = folder.path().join("new/report");
     let report = lamina(&["report", "--quick", "--json", "--out", out.to_str().unwrap()]).json();
     assert!(!report["rows"].as_array().unwrap().is_empty());
-    for file in ["index.html", "summary.md", "data.json", "matrix.csv", "determinism.csv", "skips.csv"] {
+    for file in [
+        "index.html",
+        "summary.md",
+        "data.json",
+        "results.csv",
+        "matrix.csv",
+        "determinism.csv",
+        "skips.csv",
+        "limits.csv",
+        "limit_shares.csv",
+        "mix_by_integrator.svg",
+        "stages.svg",
+    ] {
         assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
     }
     let left = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name());
     assert!(left.filter(|name| name.to_string_lossy().ends_with(".part")).count() == 0);
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(!page.contains("http"), "the page reaches for the network");
+    // Every plot and table says which command makes it.
+    for (shown, made_by) in [("<figure", "<figcaption>"), ("<h3", "Made by <code>lamina")] {
+        assert!(
+            page.matches(shown).count() > 3 && page.matches(shown).count() <= page.matches(made_by).count()
+        );
+    }
+    let again = folder.path().join("again");
+    let (again, out) = (again.to_str().unwrap(), out.to_str().unwrap());
+    let compared = lamina(&["report", "--quick", "--json", "--out", again, "--against", out]).json();
+    assert!(compared["controls"].as_u64().unwrap() >= 8 && compared["drift"].as_f64().unwrap() > 0.1);
+    for row in compared["rows"].as_array().unwrap() {
+        assert!(["faster", "slower", "alike"].contains(&row["verdict"].as_str().unwrap()), "{row:#}");
+    }
+}
+
+#[test]
+fn single_experiments_print_their_tables_and_write_nothing() {
+    let limits = lamina(&["report", "--quick", "--only", "limits", "--json"]).json();
+    let rows = limits["limits"].as_array().unwrap();
+    assert!(rows.iter().all(|row| row["median"].as_f64().unwrap() > 0.0));
+    let of = |lanes: u64| {
+        rows.iter().find(|row| row["lanes"] == lanes && row["bytes"] == 0).unwrap()["best"].as_f64().unwrap()
+    };
+    assert!(of(8) > of(1), "eight lanes calculate no more than one");
+    assert!(lamina(&["report", "--quick", "--only", "limits"]).succeeds().contains("Limits of this machine"));
 }

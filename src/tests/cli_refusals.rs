@@ -59,6 +59,9 @@ fn a_bad_command_line_is_refused_by_name() {
         ("bench --bodies 3", &["--bodies"]),
         ("determinism now", &["'now'"]),
         ("report --out", &["--out"]),
+        ("report --only lines", &["--only", "'lines'", "limits"]),
+        ("report --only limits --publish", &["--only", "--publish"]),
+        ("report --quick --against nowhere", &["--against", "nowhere"]),
     ];
     for (line, mentions) in table {
         lamina(&line.split(' ').collect::<Vec<_>>()).fails(2, mentions);

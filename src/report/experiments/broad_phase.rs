@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Contestant, SETTLE_STEPS};
-use crate::report::median;
+use crate::report::{Record, fitted_exponent, median};
 use crate::scene::Scene;
 use crate::scene::mixes::{Mix, mix};
 use crate::settings::{Broad, Settings, Skips};
@@ -26,6 +26,40 @@ pub struct Row {
     pub on_ms: f64,
     /// Median with all pairs in the narrow phase, ms per step.
     pub off_ms: f64,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "broad_phase";
+    const TITLE: &'static str = "Broad phase on and off";
+    const COMMAND: &'static str = "lamina report --only broad_phase";
+    const NOTE: &'static str = "Polygons. On and off must end in the same state, or the bench fails.";
+    const HEADER: &'static [&'static str] = &["engine", "bodies", "on ms", "off ms", "off/on"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.engine.clone(),
+            self.bodies.to_string(),
+            format!("{:.4}", self.on_ms),
+            format!("{:.4}", self.off_ms),
+            format!("{:.2}", self.off_ms / self.on_ms),
+        ]
+    }
+
+    /// After each engine's rows, the exponents fitted to them.
+    fn lines(rows: &[Self]) -> Vec<Vec<String>> {
+        let mut lines = Vec::new();
+        for engine in ["lamina2d", "tidy", "thesis"] {
+            let own: Vec<_> = rows.iter().filter(|r| r.engine == engine).collect();
+            lines.extend(own.iter().map(|row| row.cells()));
+            let exponent = |time: fn(&Row) -> f64| {
+                let points: Vec<_> = own.iter().map(|r| (r.bodies as f64, time(r))).collect();
+                fitted_exponent(&points).map_or_else(String::new, |p| format!("N^{p:.2}"))
+            };
+            let (on, off) = (exponent(|r| r.on_ms), exponent(|r| r.off_ms));
+            lines.push(vec![engine.to_owned(), "fitted".to_owned(), on, off, String::new()]);
+        }
+        lines
+    }
 }
 
 /// Times each engine with and without its broad phase, in `windows` alternating windows.

@@ -9,6 +9,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::clock::Accumulator;
+use crate::report::Record;
+use crate::report::table::{or_dash, yes_no};
 use crate::scene::{Scene, mixes};
 use crate::settings::{Integrator, Settings, Stepping};
 use crate::simulation::simulate;
@@ -37,6 +39,27 @@ pub struct Row {
     pub max_apart_m: f64,
     /// The largest distance to the semi-implicit Euler run of the same engine, metres (fixed step only).
     pub from_semi_implicit_m: Option<f64>,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "determinism";
+    const TITLE: &'static str = "Determinism: two runs";
+    const COMMAND: &'static str = "lamina determinism";
+    const NOTE: &'static str = "Six bodies. A frame lasts 1/60 s plus what this machine took for it, so variable steps never repeat.";
+    const HEADER: &'static [&'static str] =
+        &["engine", "integrator", "step", "seconds", "same bits", "max apart m", "from semi-implicit m"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.engine.clone(),
+            self.integrator.clone(),
+            self.stepping.to_string(),
+            self.seconds.to_string(),
+            yes_no(self.identical),
+            format!("{:.2e}", self.max_apart_m),
+            or_dash(self.from_semi_implicit_m.map(|d| format!("{d:.2e}"))),
+        ]
+    }
 }
 
 /// An engine that can be run twice.

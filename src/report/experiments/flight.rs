@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::force::Forces;
 use crate::integrate::{self, Plan};
 use crate::lanes::f32s;
-use crate::report::median;
+use crate::report::{Record, median};
 use crate::scene::by_name;
 use crate::settings::{Integrator, Settings, Skips};
 use crate::world::World;
@@ -32,6 +32,27 @@ pub struct Row {
     pub copy_gb_per_s: f64,
     /// The integrator's share of the copy.
     pub share: f64,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "flight";
+    const TITLE: &'static str = "Free flight against copy bandwidth";
+    const COMMAND: &'static str = "lamina report --only flight";
+    const NOTE: &'static str = "The integration pass alone, 8 lanes, beside a copy that reads and writes as many bytes in the same run.";
+    const HEADER: &'static [&'static str] =
+        &["bodies", "integrator", "ns per body", "bytes per body", "GB/s", "copy GB/s", "share"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.bodies.to_string(),
+            self.integrator.to_string(),
+            format!("{:.3}", self.ns_per_body),
+            self.bytes_per_body.to_string(),
+            format!("{:.1}", self.gb_per_s),
+            format!("{:.1}", self.copy_gb_per_s),
+            format!("{:.0} %", self.share * 100.0),
+        ]
+    }
 }
 
 /// Times the fused integration pass and a copy of as many bytes, taking turns `repeats` times.

@@ -9,7 +9,7 @@ use crate::broad::BroadPhase;
 use crate::integrate::{self, Plan};
 use crate::lanes::{Lanes, f32s};
 use crate::narrow::Narrow;
-use crate::report::median;
+use crate::report::{Record, median};
 use crate::scene::by_name;
 use crate::settings::{Broad, Integrator, Settings, Skips};
 use crate::world::World;
@@ -29,6 +29,26 @@ pub struct Row {
     pub ns_per_element: f64,
     /// Median of lanes 1 over this median.
     pub speed_up: f64,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "lanes";
+    const TITLE: &'static str = "Lanes";
+    const COMMAND: &'static str = "lamina report --only lanes";
+    const NOTE: &'static str = "Each kernel alone on the same settled bodies; an element is a pair tested, a pair collided, a body advanced.";
+    const HEADER: &'static [&'static str] =
+        &["kernel", "scene", "lanes", "elements", "ns per element", "over 1 lane"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.kernel.to_owned(),
+            self.scene.to_owned(),
+            self.lanes.to_string(),
+            self.elements.to_string(),
+            format!("{:.3}", self.ns_per_element),
+            format!("{:.2}×", self.speed_up),
+        ]
+    }
 }
 
 /// A kernel, its scene, the bodies of that scene, and steps to settle them.

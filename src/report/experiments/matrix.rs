@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Contestant, SETTLE_STEPS, integrator_of, posed};
-use crate::report::Timing;
+use crate::report::{Record, Timing};
 use crate::scene::mixes::{Mix, mix};
 use crate::settings::{Integrator, Settings};
 use crate::simulation::simulate;
@@ -36,6 +36,43 @@ pub struct Row {
     pub hash: String,
     /// How the state that was timed came about.
     pub start: &'static str,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "matrix";
+    const TITLE: &'static str = "Performance: shape mix × integrator";
+    const COMMAND: &'static str = "lamina report --only matrix";
+    const NOTE: &'static str = "The thesis's performance and complexity experiments: settled bodies, every step timed. \
+               Lane widths of one integrator must end in the same bits, or the bench fails.";
+    const HEADER: &'static [&'static str] = &[
+        "mix",
+        "integrator",
+        "bodies",
+        "engine",
+        "lanes",
+        "substeps",
+        "min ms",
+        "median ms",
+        "p99 ms",
+        "contacts",
+        "max overlap m",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.mix.clone(),
+            self.integrator.clone(),
+            self.bodies.to_string(),
+            self.engine.clone(),
+            self.lanes.to_string(),
+            self.substeps.to_string(),
+            format!("{:.4}", self.ms_per_step.min),
+            format!("{:.4}", self.ms_per_step.median),
+            format!("{:.4}", self.ms_per_step.p99),
+            self.contacts.to_string(),
+            format!("{:.3}", self.max_penetration),
+        ]
+    }
 }
 
 /// The integrator of the headline table: the default.

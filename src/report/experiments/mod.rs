@@ -9,6 +9,7 @@ pub mod contacts;
 pub mod determinism;
 pub mod flight;
 pub mod lanes;
+pub mod limits;
 pub mod matrix;
 pub mod skips;
 pub mod sleep;

@@ -4,7 +4,8 @@
 use serde::Serialize;
 
 use super::Contestant;
-use crate::report::median;
+use crate::report::table::yes_no;
+use crate::report::{Record, median};
 use crate::scene::by_name;
 use crate::settings::{Integrator, Settings, Skip, Skips};
 use crate::simulation::simulate;
@@ -32,6 +33,41 @@ pub struct Row {
     pub max_penetration_m: [f64; 2],
     /// Kinetic energy with and without, J.
     pub kinetic_energy_j: [f64; 2],
+}
+
+impl Record for Row {
+    const NAME: &'static str = "skips";
+    const TITLE: &'static str = "Skips";
+    const COMMAND: &'static str = "lamina report --only skips";
+    const NOTE: &'static str = "All exact skips on, against all but one, and against none (exact); reused manifolds on top of all, \
+               against without. Overlap and energy: on / off.";
+    const HEADER: &'static [&'static str] = &[
+        "scene",
+        "integrator",
+        "skip off",
+        "on ms",
+        "off ms",
+        "saved",
+        "same bits",
+        "spared",
+        "max overlap mm",
+        "kinetic energy J",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.scene.to_owned(),
+            self.integrator.to_string(),
+            self.skip.to_owned(),
+            format!("{:.4}", self.on_ms),
+            format!("{:.4}", self.off_ms),
+            format!("{:.1} %", self.saved * 100.0),
+            yes_no(self.same_hash),
+            self.spared.to_string(),
+            self.max_penetration_m.map(|m| format!("{:.3}", m * 1e3)).join(" / "),
+            self.kinetic_energy_j.map(|j| format!("{j:.1e}")).join(" / "),
+        ]
+    }
 }
 
 const SCENES: [(&str, Integrator, usize); 6] = [

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::DT_SECS;
 use crate::lanes::f32s;
-use crate::report::median;
+use crate::report::table::or_dash;
+use crate::report::{Record, median};
 use crate::scene::{BodyKind, BodySpec, Scene, ShapeSpec, by_name};
 use crate::settings::Settings;
 use crate::world::World;
@@ -34,6 +35,41 @@ pub struct Row {
     pub alone_us: f64,
     /// What a sleeper adds to the step of the one that flies, ns.
     pub ns_per_sleeper: f64,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "sleep";
+    const TITLE: &'static str = "Sleep";
+    const COMMAND: &'static str = "lamina report --only sleep";
+    const NOTE: &'static str = "Piles with sleep on: a step awake, a step when all sleep, and a step in which one other body flies by \
+               at 50 m/s, which finds its pairs anew in every step: beside the pile and without it.";
+    const HEADER: &'static [&'static str] = &[
+        "scene",
+        "substeps",
+        "bodies",
+        "asleep after steps",
+        "awake ms",
+        "asleep ms",
+        "asleep / awake",
+        "beside a flier µs",
+        "flier alone µs",
+        "ns per sleeper",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.scene.to_owned(),
+            self.substeps.to_string(),
+            self.bodies.to_string(),
+            or_dash(self.slept_after),
+            format!("{:.4}", self.awake_ms),
+            format!("{:.5}", self.asleep_ms),
+            format!("{:.3} %", self.share * 100.0),
+            format!("{:.2}", self.beside_us),
+            format!("{:.2}", self.alone_us),
+            format!("{:.2}", self.ns_per_sleeper),
+        ]
+    }
 }
 
 /// With the substeps that bring them to rest: at 4, a pyramid of 100 keeps wavering and nothing in it sleeps.

@@ -5,7 +5,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::DT_SECS;
-use crate::report::median;
+use crate::report::table::or_dash;
+use crate::report::{Record, median};
 use crate::scene::by_name;
 use crate::settings::{Settings, Solver};
 use crate::simulation::{BodyState, simulate};
@@ -35,6 +36,44 @@ pub struct Row {
     pub drift: f64,
     /// Why it broke off, if it did.
     pub failed: Option<String>,
+}
+
+impl Record for Row {
+    const NAME: &'static str = "stability";
+    const TITLE: &'static str = "Stability: run time against error";
+    const COMMAND: &'static str = "lamina report --only stability";
+    const NOTE: &'static str = "Piles left to stand. Moved: the farthest any body is from where it began, which is what it has sunk; \
+               a body's size or more says that it fell. Drift: since half the time. `avbd` visits contacts ten times per \
+               substep, `pgs` eight times, `soft` and `xpbd` twice. `sag`: substeps per island (`--max-sag`).";
+    const HEADER: &'static [&'static str] = &[
+        "scene",
+        "solver",
+        "substeps",
+        "seconds",
+        "ms per step",
+        "max overlap mm",
+        "mean overlap mm",
+        "rms speed m/s",
+        "moved m",
+        "drift m",
+        "broke off",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.scene.to_owned(),
+            self.solver.to_string(),
+            self.substeps.to_string(),
+            self.seconds.to_string(),
+            format!("{:.4}", self.ms_per_step),
+            format!("{:.2}", self.max_penetration * 1e3),
+            format!("{:.2}", self.mean_penetration * 1e3),
+            format!("{:.1e}", self.rms_speed),
+            format!("{:.3}", self.moved),
+            format!("{:.4}", self.drift),
+            or_dash(self.failed.as_ref()),
+        ]
+    }
 }
 
 const SCENES: [&str; 10] = [

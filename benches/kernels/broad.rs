@@ -1,0 +1,53 @@
+//! Candidate pairs of a settled pile, method by method.
+
+use std::rc::Rc;
+
+use lamina2d::broad::BroadPhase;
+use lamina2d::lanes::{Lanes, f32s};
+use lamina2d::settings::Broad;
+use lamina2d::world::World;
+
+use super::{Kernel, SIZES, Stage, answer_of, list_widths, margin};
+use crate::common::{Answer, SETTLE_STEPS};
+
+/// Candidate pairs, found anew in each call.
+struct Pairs {
+    world: Rc<World<f32s::X8>>,
+    method: Broad,
+}
+
+impl Stage for Pairs {
+    type Memory<L: Lanes<Elem = f32>> = BroadPhase<f32>;
+
+    fn elements(&self) -> usize {
+        self.world.bodies().live()
+    }
+
+    fn memory<L: Lanes<Elem = f32>>(&self) -> BroadPhase<f32> {
+        BroadPhase::default()
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
+        broad.find::<L>(self.world.bodies(), self.method, margin(), 0.0, false);
+    }
+
+    fn answer<L: Lanes<Elem = f32>>(&self, broad: &BroadPhase<f32>) -> Answer {
+        let pairs = broad.pairs();
+        answer_of(pairs.len(), pairs.iter().flatten().map(|&slot| u64::from(slot)))
+    }
+}
+
+/// Every method that looks for pairs.
+pub(super) fn list(kernels: &mut Vec<Kernel>) {
+    for size in SIZES {
+        for method in [Broad::Brute, Broad::Sweep, Broad::Grid] {
+            // The methods must give the same pairs in the same order.
+            list_widths(
+                kernels,
+                &format!("broad/{method}/{size}"),
+                &format!("broad/{size}"),
+                move |settled| Pairs { world: settled.get(&format!("circles/{size}"), SETTLE_STEPS), method },
+            );
+        }
+    }
+}

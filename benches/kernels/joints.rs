@@ -1,0 +1,121 @@
+//! Joints: found where they are, and `soft`'s two passes over them.
+
+use lamina2d::contact::Manifolds;
+use lamina2d::integrate::{self, Motion};
+use lamina2d::lanes::Lanes;
+use lamina2d::settings::Solver;
+use lamina2d::solve::Solving;
+
+use super::pile::{Pile, task};
+use super::{Kernel, Stage, answer_of, bits, list_widths};
+use crate::common::Answer;
+
+/// Which part of a step is the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// [`Solving::prepare_joints`] where nothing but poses has changed.
+    Place,
+    /// [`Solving::solve`]: before bodies move.
+    Push,
+    /// [`Solving::settle`]: after.
+    Relax,
+}
+
+/// A net's joints.
+struct Net {
+    part: Part,
+    pile: Pile,
+}
+
+/// What a pass works in.
+#[derive(Clone)]
+struct State<L: Lanes<Elem = f32>> {
+    motion: Motion<f32>,
+    solving: Solving<L>,
+}
+
+/// As a pass found it, and as it left it.
+struct Memory<L: Lanes<Elem = f32>> {
+    before: State<L>,
+    now: State<L>,
+}
+
+impl Net {
+    /// Everything as the part finds it in a step's first substep; the net hangs free: no contact is prepared.
+    fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
+        let Pile { bodies, joints, .. } = &self.pile;
+        let plan = self.pile.plan(Solver::Soft);
+        let task = task(Solver::Soft, &plan);
+        let mut state = State { motion: self.pile.motion(), solving: Solving::default() };
+        let State { motion, solving } = &mut state;
+        solving.prepare_joints(&task, bodies, joints, (None, 0));
+        if self.part == Part::Place {
+            return state;
+        }
+        let warm = solving.begin(&task, bodies, &mut Manifolds::default(), motion);
+        integrate::predict::<L>(&plan, bodies, motion, warm);
+        if self.part == Part::Relax {
+            solving.solve(&task, motion, true);
+            assert!(integrate::advance::<L>(&plan, motion), "a substep that stays finite");
+        }
+        state
+    }
+}
+
+impl Stage for Net {
+    type Memory<L: Lanes<Elem = f32>> = Memory<L>;
+
+    /// A second pass would find the joints solved.
+    const RESETS: bool = true;
+
+    fn elements(&self) -> usize {
+        self.pile.joints.living().count()
+    }
+
+    fn memory<L: Lanes<Elem = f32>>(&self) -> Memory<L> {
+        let before = self.begin();
+        Memory { now: before.clone(), before }
+    }
+
+    fn reset<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &mut Memory<L>) {
+        now.solving.clone_from(&before.solving);
+        now.motion.clone_from(&before.motion);
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {
+        let Pile { bodies, joints, .. } = &self.pile;
+        let plan = self.pile.plan(Solver::Soft);
+        let task = task(Solver::Soft, &plan);
+        let State { motion, solving } = now;
+        match self.part {
+            Part::Place => solving.prepare_joints(&task, bodies, joints, (None, 0)),
+            Part::Push => solving.solve(&task, motion, true),
+            Part::Relax => solving.settle(&task, bodies, &mut Manifolds::default(), motion),
+        }
+    }
+
+    fn answer<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &Memory<L>) -> Answer {
+        if self.part == Part::Place {
+            // What it writes is seen in what the passes make of it.
+            let [pins, rods] = now.solving.joints().batches();
+            assert!((pins + rods) * L::WIDTH >= self.elements(), "a joint without a constraint");
+            return Answer { count: self.elements(), hash: 0 };
+        }
+        let (after, before) = (now.motion.velocity.fours(), before.motion.velocity.fours());
+        let changed = after.iter().zip(before).filter(|(after, before)| after != before);
+        answer_of(changed.count(), bits(after.iter().flatten()))
+    }
+}
+
+/// Nets of about 150 and 1000 discs after a second of falling into their shape.
+pub(super) fn list(kernels: &mut Vec<Kernel>) {
+    for (name, part) in [("place", Part::Place), ("push", Part::Push), ("relax", Part::Relax)] {
+        for side in [12, 32] {
+            let kernel = format!("joints/{name}/{}", side * side);
+            list_widths(kernels, &kernel, &kernel, move |settled| Net {
+                part,
+                pile: Pile::after(settled, &format!("joint_grid/{side}"), 60),
+            });
+        }
+    }
+}

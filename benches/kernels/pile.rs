@@ -1,0 +1,83 @@
+//! Settled bodies with the pairs and contacts of their next step: what contact kernels work on.
+
+use lamina2d::body::{Bodies, Form};
+use lamina2d::broad::BroadPhase;
+use lamina2d::force::{Field, Forces};
+use lamina2d::integrate::{Motion, Plan};
+use lamina2d::joint::Joints;
+use lamina2d::lanes::{Lanes, f32s};
+use lamina2d::narrow::Narrow;
+use lamina2d::settings::{Broad, Integrator, Skips, Solver};
+use lamina2d::solve::{self, Solving, Task};
+
+use super::{TRAITS, margin};
+use crate::common::{DT_SECS, SETTLE_STEPS, Settled};
+
+/// A settled scene before its next step, whose manifolds have been found.
+pub(super) struct Pile {
+    pub(super) bodies: Bodies<f32>,
+    pub(super) joints: Joints<f32>,
+    pub(super) pairs: Vec<[u32; 2]>,
+    pub(super) narrow: Narrow<f32>,
+    fields: Vec<Field<f32>>,
+}
+
+impl Pile {
+    /// Of the mix `mix` with `size` bodies.
+    pub(super) fn of(settled: &Settled, mix: &str, size: usize) -> Self {
+        Self::after(settled, &format!("{mix}/{size}"), SETTLE_STEPS)
+    }
+
+    /// Of a scene after some steps.
+    pub(super) fn after(settled: &Settled, scene: &str, steps: usize) -> Self {
+        let world = settled.get(scene, steps);
+        let (mut bodies, joints) = (world.bodies().clone(), world.joints().clone().without_impulses());
+        bodies.refresh_polygons();
+        let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
+        broad.keep_apart(joints.apart());
+        broad.find::<f32s::X8>(&bodies, Broad::Auto, margin(), 0.0, false);
+        narrow.run::<f32s::X8>(&bodies, broad.pairs(), margin());
+        Self { pairs: broad.pairs().to_vec(), bodies, joints, narrow, fields: Forces::gravity().fields() }
+    }
+
+    /// The pairs of these forms, whichever of the two comes first.
+    pub(super) fn pairs_of(&self, [a, b]: [Form; 2]) -> Vec<[u32; 2]> {
+        let is_of = |pair: &[u32; 2]| {
+            let forms = pair.map(|slot| self.bodies.form(slot as usize));
+            forms == [a, b] || forms == [b, a]
+        };
+        self.pairs.iter().copied().filter(is_of).collect()
+    }
+
+    /// Motion memory as a step begins.
+    pub(super) fn motion(&self) -> Motion<f32> {
+        let mut motion = Motion::default();
+        motion.resize(&self.bodies);
+        motion
+    }
+
+    /// Constraints of all contacts.
+    pub(super) fn solving<L: Lanes<Elem = f32>>(&self) -> Solving<L> {
+        let (mut solving, mut narrow) = (Solving::default(), self.narrow.clone());
+        solving.prepare(&self.bodies, &mut narrow, true, &self.motion());
+        solving
+    }
+
+    /// How bodies move: one substep under gravity.
+    pub(super) fn plan(&self, solver: Solver) -> Plan<'_, f32> {
+        Plan {
+            integrator: Integrator::VelocityVerlet,
+            fields: &self.fields,
+            h_secs: DT_SECS,
+            substeps: 1,
+            skips: Skips::NONE,
+            moving: solve::pushes(solver),
+            carries: solve::carries_impulses(solver),
+        }
+    }
+}
+
+/// A step of `plan`, as its solver sees it.
+pub(super) fn task<'a>(solver: Solver, plan: &'a Plan<'a, f32>) -> Task<'a, f32> {
+    Task { solver, traits: TRAITS, dt_secs: DT_SECS, plan }
+}

@@ -1,0 +1,155 @@
+//! One solver's pass over the contacts of a pile, and what it leaves handed back to the pairs.
+
+use lamina2d::contact::Manifolds;
+use lamina2d::integrate::{self, Motion};
+use lamina2d::lanes::Lanes;
+use lamina2d::settings::Solver;
+use lamina2d::solve::Solving;
+
+use super::pile::{Pile, task};
+use super::{Kernel, SIZES, Stage, answer_of, bits, list_widths};
+use crate::common::Answer;
+
+/// Which part of a substep is the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// [`Solving::solve`]: before bodies move.
+    Solve,
+    /// [`Solving::settle`]: after.
+    Settle,
+    /// [`Solving::hand_back`]: when the step is over and manifolds are to be found anew.
+    Store,
+}
+
+/// One substep's contacts of a pile.
+struct Pass {
+    solver: Solver,
+    part: Part,
+    pile: Pile,
+}
+
+/// What a pass works in.
+#[derive(Clone)]
+struct State<L: Lanes<Elem = f32>> {
+    motion: Motion<f32>,
+    manifolds: Manifolds<f32>,
+    solving: Solving<L>,
+}
+
+/// As a pass found it, and as it left it.
+struct Memory<L: Lanes<Elem = f32>> {
+    before: State<L>,
+    now: State<L>,
+}
+
+impl Pass {
+    /// Everything as the part finds it in a step's first substep under gravity.
+    fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
+        let (plan, bodies) = (self.pile.plan(self.solver), &self.pile.bodies);
+        let task = task(self.solver, &plan);
+        let mut state = State {
+            motion: self.pile.motion(),
+            manifolds: self.pile.narrow.manifolds.clone(),
+            solving: self.pile.solving::<L>(),
+        };
+        let State { motion, manifolds, solving } = &mut state;
+        let warm = solving.begin(&task, bodies, manifolds, motion);
+        integrate::predict::<L>(&plan, bodies, motion, warm);
+        if self.part == Part::Solve {
+            return state;
+        }
+        solving.solve(&task, motion, true);
+        assert!(integrate::advance::<L>(&plan, motion), "a substep that stays finite");
+        if self.part == Part::Settle && self.solver == Solver::Avbd {
+            // It cuts bodies into batches in its first pass after contacts have changed: not what a pass is.
+            let untouched = (state.motion.clone(), state.manifolds.clone());
+            state.solving.settle(&task, bodies, &mut state.manifolds, &mut state.motion);
+            (state.motion, state.manifolds) = untouched;
+        }
+        if self.part == Part::Store {
+            let State { motion, manifolds, solving } = &mut state;
+            solving.settle(&task, bodies, manifolds, motion);
+            solving.end(&task, manifolds, motion);
+        }
+        state
+    }
+}
+
+impl Stage for Pass {
+    type Memory<L: Lanes<Elem = f32>> = Memory<L>;
+
+    /// A second pass would find the contacts solved.
+    const RESETS: bool = true;
+
+    fn elements(&self) -> usize {
+        self.pile.narrow.manifolds.len()
+    }
+
+    fn memory<L: Lanes<Elem = f32>>(&self) -> Memory<L> {
+        let before = self.begin();
+        Memory { now: before.clone(), before }
+    }
+
+    fn reset<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &mut Memory<L>) {
+        now.solving.clone_from(&before.solving);
+        now.motion.clone_from(&before.motion);
+        now.manifolds.clone_from(&before.manifolds);
+    }
+
+    fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {
+        let plan = self.pile.plan(self.solver);
+        let task = task(self.solver, &plan);
+        let State { motion, manifolds, solving } = now;
+        match self.part {
+            Part::Solve => solving.solve(&task, motion, true),
+            Part::Settle => solving.settle(&task, &self.pile.bodies, manifolds, motion),
+            Part::Store => solving.hand_back(manifolds, motion),
+        }
+    }
+
+    fn answer<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &Memory<L>) -> Answer {
+        let rows = |state: &State<L>| {
+            let motion = &state.motion;
+            let columns = motion.velocity.fours().iter().chain(motion.moved.fours());
+            // Rows beside the pairs are where padding lanes write.
+            let pairs = state.manifolds.pairs();
+            let pairs = state.manifolds.gaps()[..pairs].iter().chain(&state.manifolds.impulses()[..pairs]);
+            columns.chain(pairs).copied().collect::<Vec<[f32; 4]>>()
+        };
+        let (before, after) = (rows(before), rows(now));
+        let changed = after.iter().zip(&before).filter(|(after, before)| after != before);
+        answer_of(changed.count(), bits(after.iter().flatten()))
+    }
+}
+
+/// The passes over contacts: before bodies move, and after.
+const PASSES: [(&str, Solver, Part); 7] = [
+    ("impulse", Solver::Impulse, Part::Solve),
+    ("impulse_settle", Solver::Impulse, Part::Settle),
+    ("pgs", Solver::Pgs, Part::Solve),
+    ("soft", Solver::Soft, Part::Solve),
+    ("soft_settle", Solver::Soft, Part::Settle),
+    // These two see contacts only after bodies have moved.
+    ("xpbd_settle", Solver::Xpbd, Part::Settle),
+    ("avbd_settle", Solver::Avbd, Part::Settle),
+];
+
+/// Every pass, and the hand-back, on contacts of one point and mostly of two.
+pub(super) fn list(kernels: &mut Vec<Kernel>) {
+    let mut pass = |name: &str, solver: Solver, part: Part| {
+        for mix in ["circles", "polygons"] {
+            for size in SIZES {
+                let kernel = format!("{name}/{mix}/{size}");
+                list_widths(kernels, &kernel, &kernel, move |settled| Pass {
+                    solver,
+                    part,
+                    pile: Pile::of(settled, mix, size),
+                });
+            }
+        }
+    };
+    for (name, solver, part) in PASSES {
+        pass(&format!("solve/{name}"), solver, part);
+    }
+    pass("store", Solver::Soft, Part::Store);
+}

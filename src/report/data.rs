@@ -1,0 +1,231 @@
+//! What a report consists of: the list of experiments and their rows.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::experiments::{
+    broad_phase, contacts, determinism, flight, lanes, limits, matrix, skips, sleep, stability,
+};
+use super::headline::{Headline, headlines};
+use super::peers::{self, Peers};
+use super::table::{Record, Table};
+use super::{Machine, instructions};
+
+/// Everything a report shows.
+#[derive(Clone, Debug, Serialize)]
+pub struct Data {
+    /// Where and with which build.
+    pub machine: Machine,
+    /// Quick mode: fewer bodies and repeats.
+    pub quick: bool,
+    /// Shape mix × integrator × bodies × lanes, beside the baseline.
+    pub matrix: Vec<matrix::Row>,
+    /// Broad phase on and off.
+    pub broad_phase: Vec<broad_phase::Row>,
+    /// Two runs, compared by bits.
+    pub determinism: Vec<determinism::Row>,
+    /// Kernels at each width.
+    pub lanes: Vec<lanes::Row>,
+    /// Where a step of a settled pile goes.
+    pub contacts: Vec<contacts::Row>,
+    /// Piles that are hard to hold, by every solver.
+    pub stability: Vec<stability::Row>,
+    /// Piles awake and asleep.
+    pub sleep: Vec<sleep::Row>,
+    /// Each skip on and off.
+    pub skips: Vec<skips::Row>,
+    /// Free flight against copy bandwidth.
+    pub flight: Vec<flight::Row>,
+    /// What the machine can copy and calculate.
+    pub limits: Vec<limits::Row>,
+    /// What `lamina-peers` measured, in a file of its own.
+    #[serde(skip)]
+    pub peers: Option<Peers>,
+    /// What `lamina gate` holds, in a file of its own.
+    #[serde(skip)]
+    pub instructions: Vec<instructions::Row>,
+}
+
+/// One experiment: fills its rows of a report.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// What `lamina report --only` calls it: the name of its table.
+    pub name: &'static str,
+    run: fn(&mut Data, &mut dyn FnMut()) -> anyhow::Result<()>,
+}
+
+/// All experiments, in the order in which they run.
+pub const EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: matrix::Row::NAME,
+        run: |data, tick| {
+            data.matrix = matrix::run(&plan(data.quick), tick)?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: broad_phase::Row::NAME,
+        run: |data, _| {
+            data.broad_phase = broad_phase::run(if data.quick { 4 } else { 16 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: determinism::Row::NAME,
+        run: |data, _| {
+            data.determinism = determinism::run()?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: lanes::Row::NAME,
+        run: |data, _| {
+            data.lanes = lanes::run(if data.quick { 8 } else { 40 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: contacts::Row::NAME,
+        run: |data, _| {
+            data.contacts = contacts::run(data.quick, if data.quick { 5 } else { 20 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: stability::Row::NAME,
+        run: |data, _| {
+            data.stability = stability::run(data.quick, if data.quick { 2.0 } else { 10.0 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: sleep::Row::NAME,
+        run: |data, _| {
+            data.sleep = sleep::run(data.quick)?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: skips::Row::NAME,
+        run: |data, _| {
+            data.skips = skips::run(if data.quick { 4 } else { 16 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: flight::Row::NAME,
+        run: |data, _| {
+            data.flight = flight::run(if data.quick { 20 } else { 100 })?;
+            Ok(())
+        },
+    },
+    Experiment {
+        name: limits::Row::NAME,
+        run: |data, _| {
+            data.limits = limits::run(if data.quick { 8 } else { 40 });
+            Ok(())
+        },
+    },
+];
+
+fn plan(quick: bool) -> matrix::Plan {
+    if quick { matrix::Plan::quick() } else { matrix::Plan::full() }
+}
+
+impl Data {
+    /// A report of this machine without a row.
+    pub fn empty(quick: bool) -> Self {
+        Self {
+            machine: Machine::read(),
+            quick,
+            matrix: Vec::new(),
+            broad_phase: Vec::new(),
+            determinism: Vec::new(),
+            lanes: Vec::new(),
+            contacts: Vec::new(),
+            stability: Vec::new(),
+            sleep: Vec::new(),
+            skips: Vec::new(),
+            flight: Vec::new(),
+            limits: Vec::new(),
+            peers: None,
+            instructions: Vec::new(),
+        }
+    }
+
+    /// How often [`Data::measure`] calls its `tick`.
+    pub fn rounds(quick: bool, experiments: &[Experiment]) -> u64 {
+        let of = |e: &Experiment| if e.name == matrix::Row::NAME { plan(quick).rounds() + 1 } else { 1 };
+        experiments.iter().map(of).sum()
+    }
+
+    /// Runs these experiments; `tick` is told what is being done, and that another round of it is.
+    ///
+    /// # Errors
+    /// A scene that cannot be run, results that differ between lane widths.
+    pub fn measure(
+        quick: bool,
+        experiments: &[Experiment],
+        tick: &mut dyn FnMut(&'static str),
+    ) -> anyhow::Result<Self> {
+        let mut data = Self::empty(quick);
+        for experiment in experiments {
+            (experiment.run)(&mut data, &mut || tick(experiment.name))?;
+            tick(experiment.name);
+        }
+        Ok(data)
+    }
+
+    /// The headline: how many times faster than the baseline with its Euler each mix runs, at 8 lanes.
+    pub fn headlines(&self) -> Vec<Headline> {
+        headlines(self)
+    }
+
+    /// Every table that has rows, in the order of the page.
+    ///
+    /// # Errors
+    /// A row that has no JSON.
+    pub fn tables(&self) -> anyhow::Result<Vec<Table>> {
+        let all = [
+            Table::of(&self.headlines())?,
+            Table::of(&self.matrix)?,
+            Table::of(&self.broad_phase)?,
+            Table::of(&self.determinism)?,
+            Table::of(&self.stability)?,
+            Table::of(&self.peers.as_ref().map(Peers::scenes).unwrap_or_default())?,
+            Table::of(self.peers.as_ref().map_or(&[][..], |peers| &peers.rows))?,
+            Table::of(&self.contacts)?,
+            Table::of(&self.lanes)?,
+            Table::of(&self.skips)?,
+            Table::of(&self.sleep)?,
+            Table::of(&self.instructions)?,
+            Table::of(&limits::shares(self))?,
+            Table::of(&self.limits)?,
+            Table::of(&self.flight)?,
+        ];
+        Ok(all.into_iter().filter(|table| !table.raw.is_empty()).collect())
+    }
+
+    /// What `lamina report --json` prints: the result table under `rows`, every other table under its name.
+    ///
+    /// # Errors
+    /// A row that has no JSON.
+    pub fn summary(&self) -> anyhow::Result<Value> {
+        let mut summary = Map::new();
+        for table in self.tables()? {
+            // The matrix is large, and in the report's folder.
+            match table.name {
+                matrix::Row::NAME if !self.headlines().is_empty() => {}
+                // In files of their own.
+                peers::Row::NAME | instructions::Row::NAME => {}
+                Headline::NAME => {
+                    summary.insert("rows".to_owned(), json!(table.raw));
+                }
+                name => {
+                    summary.insert(name.to_owned(), json!(table.raw));
+                }
+            }
+        }
+        Ok(Value::Object(summary))
+    }
+}

@@ -1,0 +1,111 @@
+//! From rows to tables: what an experiment's row must know to be shown, and the tables made of it.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// A row of an experiment, and how a reader sees a table of such rows.
+pub trait Record: Serialize {
+    /// File name of the raw rows, without its ending; also the table's anchor on the page.
+    const NAME: &'static str;
+    /// The table's heading.
+    const TITLE: &'static str;
+    /// The command that makes the rows.
+    const COMMAND: &'static str;
+    /// How to read the table: what was run, what an unusual column means.
+    const NOTE: &'static str;
+    /// The columns.
+    const HEADER: &'static [&'static str];
+
+    /// One cell per column.
+    fn cells(&self) -> Vec<String>;
+
+    /// All lines of the table.
+    fn lines(rows: &[Self]) -> Vec<Vec<String>>
+    where
+        Self: Sized,
+    {
+        rows.iter().map(Self::cells).collect()
+    }
+}
+
+/// A table, with the raw rows it was made of.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// File name of the raw rows, without its ending.
+    pub name: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// The command that makes its rows.
+    pub command: &'static str,
+    /// How to read it.
+    pub note: &'static str,
+    /// The columns.
+    pub header: &'static [&'static str],
+    /// The lines.
+    pub lines: Vec<Vec<String>>,
+    /// The rows themselves, as JSON.
+    pub raw: Vec<Value>,
+}
+
+impl Table {
+    /// Of all rows of an experiment.
+    ///
+    /// # Errors
+    /// A row that has no JSON.
+    pub fn of<R: Record>(rows: &[R]) -> anyhow::Result<Self> {
+        Ok(Self {
+            name: R::NAME,
+            title: R::TITLE,
+            command: R::COMMAND,
+            note: R::NOTE,
+            header: R::HEADER,
+            lines: R::lines(rows),
+            raw: rows.iter().map(serde_json::to_value).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The raw rows as CSV; nested fields become columns `outer_inner`.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_csv(&self, to: impl std::io::Write) -> anyhow::Result<()> {
+        let mut writer = csv::Writer::from_writer(to);
+        for (k, row) in self.raw.iter().enumerate() {
+            let mut cells = Vec::new();
+            flatten("", row, &mut cells);
+            if k == 0 {
+                writer.write_record(cells.iter().map(|c| &c.0))?;
+            }
+            writer.write_record(cells.iter().map(|c| &c.1))?;
+        }
+        Ok(writer.flush()?)
+    }
+}
+
+fn flatten(key: &str, value: &Value, cells: &mut Vec<(String, String)>) {
+    let inner = |k: &str| if key.is_empty() { k.to_owned() } else { format!("{key}_{k}") };
+    match value {
+        Value::Object(map) => map.iter().for_each(|(k, v)| flatten(&inner(k), v, cells)),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(k, v)| flatten(&inner(&k.to_string()), v, cells));
+        }
+        Value::String(text) => cells.push((key.to_owned(), text.clone())),
+        Value::Null => cells.push((key.to_owned(), String::new())),
+        other => cells.push((key.to_owned(), other.to_string())),
+    }
+}
+
+/// `12.3×`, or a dash where there is nothing to compare with.
+pub(super) fn times(ratio: Option<f64>) -> String {
+    ratio.map_or_else(|| "–".to_owned(), |r| format!("{r:.1}×"))
+}
+
+/// The value, or a dash.
+pub(super) fn or_dash(value: Option<impl ToString>) -> String {
+    value.map_or_else(|| "–".to_owned(), |v| v.to_string())
+}
+
+/// yes or no.
+pub(super) fn yes_no(yes: bool) -> String {
+    if yes { "yes" } else { "no" }.to_owned()
+}
