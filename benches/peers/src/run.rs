@@ -26,7 +26,7 @@ pub struct Missing {
 pub struct Results {
     /// Of each engine on each scene.
     pub rows: Vec<Row>,
-    /// Scenes an engine cannot express.
+    /// Scenes an engine cannot express, or broke on before the clock ran.
     pub gaps: Vec<Missing>,
 }
 
@@ -75,10 +75,23 @@ impl Results {
             tick();
         }
         for Contestant { setup, engine, samples_ms, steps, stopped } in contestants {
+            if samples_ms.is_empty() {
+                let why = stopped.unwrap_or_else(|| "no step was timed".to_owned());
+                self.miss(scene, setup, format!("{} on {}: {why}", setup.engine, scene.name));
+                continue;
+            }
             let row = Row::of(scene, &blueprint, setup, engine.as_ref(), &samples_ms, steps, stopped);
             self.rows.push(row);
         }
         Ok(())
+    }
+
+    /// Notes what an engine could not run, once.
+    fn miss(&mut self, scene: &Scene, setup: Setup, why: String) {
+        let missing = Missing { scene: scene.name.clone(), engine: setup.engine.name(), why };
+        if !self.gaps.contains(&missing) {
+            self.gaps.push(missing);
+        }
     }
 
     /// A new contestant; `None`, and a gap, where the engine cannot express the scene.
@@ -90,10 +103,7 @@ impl Results {
             Err(error) => {
                 let why = error.downcast_ref::<Gap>().map(ToString::to_string);
                 let Some(why) = why else { return Err(error.context(format!("scene {}", scene.name))) };
-                let missing = Missing { scene: scene.name.clone(), engine: setup.engine.name(), why };
-                if !self.gaps.contains(&missing) {
-                    self.gaps.push(missing);
-                }
+                self.miss(scene, setup, why);
                 Ok(None)
             }
         }
