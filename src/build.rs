@@ -27,8 +27,13 @@ fn main() {
     ] {
         println!("cargo::rustc-env={name}={value}");
     }
-    println!("cargo::rerun-if-changed=.git/HEAD");
-    println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    // In a linked worktree they are not below .git; a path that does not exist would mean a build each time.
+    for file in ["HEAD", "logs/HEAD"] {
+        let path = output("git", &["rev-parse", "--git-path", file]);
+        if let Some(path) = path.filter(|path| std::path::Path::new(path).exists()) {
+            println!("cargo::rerun-if-changed={path}");
+        }
+    }
     // An edit makes the commit "+changes".
     println!("cargo::rerun-if-changed=src");
 }
