@@ -31,11 +31,12 @@ pub(super) struct LongBodies<R> {
     bounds: Vec<Bound<R>>,
     plain: Vec<u32>,
     median_radius: f64,
+    all_dynamic: bool,
 }
 
 impl<R> Default for LongBodies<R> {
     fn default() -> Self {
-        Self { bounds: Vec::new(), plain: Vec::new(), median_radius: 0.0 }
+        Self { bounds: Vec::new(), plain: Vec::new(), median_radius: 0.0, all_dynamic: false }
     }
 }
 
@@ -46,6 +47,12 @@ impl<R: Real> LongBodies<R> {
 
     pub(super) fn slots(&self) -> impl Iterator<Item = u32> + '_ {
         self.bounds.iter().map(|bound| bound.slot)
+    }
+
+    /// Some body, where all are plain and dynamic.
+    pub(super) fn all_free(&self) -> Option<usize> {
+        let first = self.plain.first().map(|&slot| slot as usize);
+        first.filter(|_| self.bounds.is_empty() && self.all_dynamic)
     }
 
     /// Of movable bodies, metres; infinite where none moves.
@@ -65,6 +72,7 @@ impl<R: Real> LongBodies<R> {
         self.median_radius = median;
         self.bounds.clear();
         self.plain.clear();
+        self.all_dynamic = bodies.slots().all(|slot| bodies.kind(slot) == BodyKind::Dynamic);
         for slot in bodies.slots() {
             let (low, high) = extent(bodies, slot);
             let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];

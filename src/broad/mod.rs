@@ -207,7 +207,8 @@ impl<R: Real> BroadPhase<R> {
         let searched = if some_sleep { self.frozen.awake_slots().len() } else { bodies.live() };
         let method = Self::resolve(method, searched);
         let keep = keep && method != Broad::Off;
-        if keep && self.keep.holds::<L>(bodies, ahead_secs) {
+        let along = if some_sleep { None } else { self.long.all_free() };
+        if keep && self.keep.holds::<L>(bodies, ahead_secs, along) {
             return BroadCounts { kept: true, ..self.kept };
         }
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };

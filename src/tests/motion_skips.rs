@@ -92,6 +92,39 @@ fn free_flight_and_rotation_skips_give_the_bits_of_the_whole_step() {
     }
 }
 
+/// A swarm that drifts at 20 m/s while its bodies slowly run into each other: the list of pairs is kept nearly all the
+/// way, and every contact is found when it would be without.
+#[test]
+fn a_drifting_swarm_keeps_its_pairs_and_every_bit() {
+    let scatter = common_motion::scatter;
+    let swarm = |extra: Option<BodySpec>| {
+        let bodies = (0..400).map(|k| {
+            let position = [(k % 20) as f64 * 0.202, (k / 20) as f64 * 0.202];
+            let velocity = [20.0 + 0.03 * scatter(k, 1), 20.0 + 0.03 * scatter(k, 2)];
+            disc(position).moving(velocity, 0.0)
+        });
+        scene_of(bodies.chain(extra).collect(), Forces::gravity())
+    };
+    // With a floor, even far below, nothing is seen relative to anything.
+    let floor = BodySpec::new(ShapeSpec::Box([50.0, 0.5]), [0.0, -90.0]).fixed();
+    for (scene, keeps) in [(swarm(None), true), (swarm(Some(floor)), false)] {
+        for settings in at_every_width(Settings { skips: Skips::EXACT, ..Settings::default() }) {
+            let without = Settings { skips: settings.skips.without(Skip::PairList), ..settings };
+            let (mut kept, mut found) = (start(&scene, settings), start(&scene, without));
+            let (mut served, mut contacts) = (0, 0);
+            for _ in 0..40 {
+                kept.step(common_motion::DT_SECS).unwrap();
+                found.step(common_motion::DT_SECS).unwrap();
+                assert_eq!(kept.hash(), found.hash(), "{settings:?}");
+                served += usize::from(kept.counts().skipped[Skip::PairList as usize] > 0);
+                contacts += kept.counts().contacts;
+            }
+            assert!(contacts > 40, "{contacts} contacts");
+            assert_eq!(served > 20, keeps, "served {served} times of 40 in {settings:?}");
+        }
+    }
+}
+
 /// 150 bodies in slots 1 to 150, of which only the first spins: the block of the first is not spared,
 /// and no body that does not exist is counted as spared.
 #[test]
