@@ -230,7 +230,8 @@ fn peers_times_faster(data: &Data) -> anyhow::Result<Plot> {
     let scenes = data.peers.as_ref().map(Peers::scenes).unwrap_or_default();
     let find = |name: &&str| scenes.iter().find(|s| s.scene == **name && s.threads == 1 && !s.sleep);
     let shown: Vec<_> = PEER_SCENES.iter().filter_map(find).collect();
-    let labels: Vec<_> = shown.iter().map(|s| s.scene.replace("000", "k").replace("kk", "M")).collect();
+    let short = |name: &str| name.strip_suffix("000").map_or_else(|| name.to_owned(), |n| format!("{n}k"));
+    let labels: Vec<_> = shown.iter().map(|s| short(&s.scene)).collect();
     let series = ["Box2D", "rapier"].into_iter().enumerate().map(|(peer, name)| {
         let height = |s: &&peers::Scene| s.times_faster()[peer].unwrap_or(0.0);
         let points = shown.iter().enumerate().map(|(k, s)| (k as f64, height(s))).collect();

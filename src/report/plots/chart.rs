@@ -82,7 +82,8 @@ pub(super) fn log_log(
                 .configure_mesh()
                 .x_desc(x_label)
                 .y_desc(y_label)
-                .x_label_formatter(&|v| format!("{v}"))
+                .x_labels(6)
+                .x_label_formatter(&|v| short(*v))
                 .y_label_formatter(&|v| short(*v))
                 .light_line_style(WHITE)
                 .draw(),
