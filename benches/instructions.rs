@@ -21,7 +21,7 @@ mod steps;
 use std::path::PathBuf;
 
 use iai_callgrind::{
-    Callgrind, LibraryBenchmarkConfig, OutputFormat, library_benchmark, library_benchmark_group, main,
+    Callgrind, LibraryBenchmarkConfig, OutputFormat, library_benchmark, library_benchmark_group,
 };
 use lamina2d::column::Column;
 use lamina2d::lanes::f32s;
@@ -154,6 +154,7 @@ macro_rules! counted {
     };
 }
 
+// What the gate allows a count to change by follows from the names of these functions.
 counted!(
     KERNELS,
     kernels_once,
@@ -310,15 +311,49 @@ counted!(
     ["proof/once/6399/x8", "proof/one_percent_more/6463/x8", "proof/twice/12799/x8"]
 );
 
-// The gate knows the groups by these names: what it allows them to change by follows from them.
 library_benchmark_group!(name = kernel_calls; benchmarks = kernels_once);
 library_benchmark_group!(name = scene_windows; benchmarks = steps_of_window);
 library_benchmark_group!(name = proof; benchmarks = proof_once);
 
-main!(
-    config = LibraryBenchmarkConfig::default()
-        .tool(Callgrind::with_args(["--cache-sim=no"]))
-        .output_format(OutputFormat::default().truncate_description(None));
-    setup = hand_over();
-    library_benchmark_groups = kernel_calls, scene_windows, proof
-);
+/// Makes a program of some groups: the framework runs all of what `main!` is given.
+macro_rules! program {
+    ($name:ident: $($group:ident),+) => {
+        mod $name {
+            use super::{config, hand_over, $($group),+};
+
+            iai_callgrind::main!(
+                config = config();
+                setup = hand_over();
+                library_benchmark_groups = $($group),+
+            );
+
+            pub(super) fn run() {
+                main();
+            }
+        }
+    };
+}
+
+program!(all: kernel_calls, scene_windows, proof);
+program!(kernels_alone: kernel_calls);
+program!(scenes_alone: scene_windows);
+program!(proof_alone: proof);
+
+fn config() -> LibraryBenchmarkConfig {
+    let mut config = LibraryBenchmarkConfig::default();
+    config.tool(Callgrind::with_args(["--cache-sim=no"]));
+    config.output_format(OutputFormat::default().truncate_description(None));
+    config
+}
+
+/// `LAMINA_INSTRUCTIONS` chooses the group, so that the gate can run two at once. Under valgrind the environment is
+/// empty, and the runner names the bench.
+fn main() {
+    match std::env::var("LAMINA_INSTRUCTIONS").as_deref() {
+        Ok("kernels") => kernels_alone::run(),
+        Ok("scenes") => scenes_alone::run(),
+        Ok("proof") => proof_alone::run(),
+        Ok(other) => panic!("LAMINA_INSTRUCTIONS is kernels, scenes or proof, not '{other}'"),
+        Err(_) => all::run(),
+    }
+}

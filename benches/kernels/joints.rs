@@ -32,6 +32,8 @@ struct Net {
 struct State<L: Lanes<Elem = f32>> {
     motion: Motion<f32>,
     solving: Solving<L>,
+    /// None: nothing touches.
+    manifolds: Manifolds<f32>,
 }
 
 /// As a pass found it, and as it left it.
@@ -46,13 +48,17 @@ impl Net {
         let Pile { bodies, joints, .. } = &self.pile;
         let plan = self.pile.plan(Solver::Soft);
         let task = task(Solver::Soft, &plan);
-        let mut state = State { motion: self.pile.motion(), solving: Solving::default() };
-        let State { motion, solving } = &mut state;
+        let mut state = State {
+            motion: self.pile.motion(),
+            solving: Solving::default(),
+            manifolds: Manifolds::default(),
+        };
+        let State { motion, solving, manifolds } = &mut state;
         solving.prepare_joints(&task, bodies, joints, (None, 0));
         if self.part == Part::Place {
             return state;
         }
-        let warm = solving.begin(&task, bodies, &mut Manifolds::default(), motion);
+        let warm = solving.begin(&task, bodies, manifolds, motion);
         integrate::predict::<L>(&plan, bodies, motion, warm);
         if self.part == Part::Relax {
             solving.solve(&task, motion, true);
@@ -86,11 +92,11 @@ impl Stage for Net {
         let Pile { bodies, joints, .. } = &self.pile;
         let plan = self.pile.plan(Solver::Soft);
         let task = task(Solver::Soft, &plan);
-        let State { motion, solving } = now;
+        let State { motion, solving, manifolds } = now;
         match self.part {
             Part::Place => solving.prepare_joints(&task, bodies, joints, (None, 0)),
             Part::Push => solving.solve(&task, motion, true),
-            Part::Relax => solving.settle(&task, bodies, &mut Manifolds::default(), motion),
+            Part::Relax => solving.settle(&task, bodies, manifolds, motion),
         }
     }
 

@@ -35,9 +35,9 @@ pub enum RunError {
 /// What runs, for messages.
 const BENCH: &str = "cargo bench --bench instructions";
 
-/// The groups of `benches/instructions.rs`.
-const KERNELS: &str = "kernel_calls";
-const SCENES: &str = "scene_windows";
+/// What `benches/instructions.rs` is told to run by `LAMINA_INSTRUCTIONS`.
+const KERNELS: &str = "kernels";
+const SCENES: &str = "scenes";
 const PROOF: &str = "proof";
 
 /// Counts all kernels and scenes, in two processes at once: counts do not depend on what else runs. `tick` is told
@@ -106,22 +106,22 @@ fn build() -> Result<(), RunError> {
     if !Path::new("benches/instructions.rs").is_file() {
         return Err(RunError::Checkout("there is no benches/instructions.rs here".to_owned()));
     }
-    cargo(&["--no-run"])?.end()
+    Run(cargo(&["--no-run"]).spawn()?).end()
 }
 
 fn start(group: &str) -> Result<Run, RunError> {
-    let filter = format!("instructions::{group}");
-    cargo(&["--quiet", "--", "--output-format=json", "--nosummary", &filter])
+    let mut command = cargo(&["--quiet", "--", "--output-format=json", "--nosummary"]);
+    Ok(Run(command.env("LAMINA_INSTRUCTIONS", group).spawn()?))
 }
 
 /// The bench by the cargo that runs this program, with the flags this program was built with.
-fn cargo(more: &[&str]) -> Result<Run, RunError> {
+fn cargo(more: &[&str]) -> Command {
     let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let mut command = Command::new(program);
     command.args(["bench", "--bench", "instructions"]).args(more);
     command.env("CARGO_ENCODED_RUSTFLAGS", env!("LAMINA_FLAGS").replace(' ', "\u{1f}"));
     command.stdin(Stdio::null()).stdout(Stdio::piped());
-    Ok(Run(command.spawn()?))
+    command
 }
 
 /// Kind, name and instructions from one line of the runner; `None` for lines that are no summary.
@@ -129,15 +129,15 @@ fn read(line: &str) -> Result<Option<(Kind, String, u64)>, RunError> {
     let Some(summary) = serde_json::from_str::<Value>(line).ok().filter(Value::is_object) else {
         return Ok(None);
     };
-    let path = summary["module_path"].as_str().unwrap_or_default();
+    let function = summary["function_name"].as_str().unwrap_or_default();
     let details = summary["details"].as_str().unwrap_or_default();
-    let missing = |why| RunError::Summary { bench: format!("{path} {details}"), why };
+    let missing = |why| RunError::Summary { bench: format!("{function} {details}"), why };
     // The argument as it stands in the source: kernel("narrow/box-box/150/x8").
     let name = details.split('"').nth(1).ok_or_else(|| missing("no name in its details"))?;
-    let kind = match path.split("::").nth(1) {
-        Some(KERNELS | PROOF) => Kind::Kernel,
-        Some(SCENES) => Kind::Steps,
-        _ => return Err(missing("a group the gate does not know")),
+    let kind = match function {
+        "kernels_once" | "proof_once" => Kind::Kernel,
+        "steps_of_window" => Kind::Steps,
+        _ => return Err(missing("a function the gate does not know")),
     };
     let count = &summary["profiles"][0]["summaries"]["total"]["summary"]["Callgrind"]["Ir"]["metrics"];
     // New alone, or new and that of the run before.
