@@ -1,5 +1,6 @@
 //! What is said of a run, measured by the same `f64` code on every engine's states.
 
+use lamina2d::joint::{Joint, JointKind};
 use lamina2d::measure::{case_error, hash_of, penetration};
 use lamina2d::report::Timing;
 use lamina2d::scene::{BodyKind, Scene};
@@ -49,6 +50,9 @@ pub struct Row {
     pub momentum_error: Option<f64>,
     /// How much lower the body that began highest is, metres, where a scene is meant to stand.
     pub sunk: Option<f64>,
+    /// The widest gap any joint has at the end, metres: between the points it holds together, or between a rod and
+    /// its length. None where the scene has no joints.
+    pub joint_gap: Option<f64>,
     /// Movable bodies below everything that holds them, at the end.
     pub escaped: usize,
     /// Bodies asleep at the end.
@@ -94,6 +98,7 @@ impl Row {
             error: case_error(scene, t_secs, |body| (states[body].position, states[body].rotation)),
             momentum_error: momentum_error(blueprint, &states, t_secs),
             sunk: sunk(blueprint, &states),
+            joint_gap: joint_gap(blueprint, &states),
             escaped: escaped(blueprint, &states),
             asleep: engine.asleep(),
             finite: columns(&states).all(f64::is_finite),
@@ -145,6 +150,29 @@ fn sunk(blueprint: &Blueprint, states: &[BodyState]) -> Option<f64> {
     let began = |k: usize| blueprint.bodies[k].start.position[1];
     let highest = (0..states.len()).max_by(|&a, &b| began(a).total_cmp(&began(b)))?;
     Some(began(highest) - states[highest].position[1])
+}
+
+/// The widest gap of any joint, metres.
+fn joint_gap(blueprint: &Blueprint, states: &[BodyState]) -> Option<f64> {
+    let gap = |joint: &Joint| {
+        let ends = Blueprint::ends(joint);
+        let [[ax, ay], [bx, by]] = [0, 1].map(|k| {
+            let ([x, y], [c, s]) = (states[ends[k]].position, states[ends[k]].rotation);
+            let [u, v] = joint.anchors_body[k];
+            [x + c * u - s * v, y + s * u + c * v]
+        });
+        let apart = (bx - ax).hypot(by - ay);
+        match &joint.kind {
+            JointKind::Revolute(_) | JointKind::Weld(_) => apart,
+            JointKind::Distance(d) if d.spring.is_none() && d.min.is_none() && d.max.is_none() => {
+                (apart - joint.length).abs()
+            }
+            JointKind::Distance(d) => {
+                (apart - d.max.unwrap_or(f64::INFINITY)).max(d.min.unwrap_or(0.0) - apart).max(0.0)
+            }
+        }
+    };
+    blueprint.joints.iter().map(gap).reduce(f64::max)
 }
 
 /// Movable bodies whose centre is below every box that is static or kinematic.

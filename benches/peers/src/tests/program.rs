@@ -29,7 +29,8 @@ const FIELDS: [&str; 13] = [
 fn json_has_the_contract() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("rows.json");
-    let output = peers(&["stack/3", "roll", "--json", "--out", file.to_str().unwrap()]).output().unwrap();
+    let output =
+        peers(&["stack/3", "roll", "chain/4", "--json", "--out", file.to_str().unwrap()]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(document["machine"]["rustc"].is_string());
@@ -55,6 +56,8 @@ fn json_has_the_contract() {
     let engines: Vec<_> = rows.iter().filter(|r| r["scene"] == "stack/3").map(|r| &r["engine"]).collect();
     assert_eq!(engines, ["lamina2d", "box2d", "rapier2d"]);
     assert!(rows.iter().filter(|r| r["scene"] == "roll").all(|r| r["error"].as_f64().unwrap() < 0.1));
+    let chains = rows.iter().filter(|r| r["scene"] == "chain/4");
+    assert!(chains.clone().count() == 3 && chains.clone().all(|r| r["joint_gap"].as_f64().unwrap() < 0.02));
     let written: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
     assert_eq!(written, document);
 }
