@@ -36,9 +36,9 @@
 //! [[joint]]                                # bodies by their number, from 0; anchors in the world
 //! bodies = [1, 2]
 //! kind = { distance = { spring = { hertz = 2.0, damping = 0.3 }, max = 4.0 } }
-//! # kind = { revolute = { anchor = [0, 1], motor = { speed = 2, max_torque = 5 }, limits = { lower = -1, upper = 1 } } }
-//! # kind = { weld = { anchor = [0, 1] } }
-//! # collide = true                         # else the two pass through each other
+//! ## kind = { revolute = { anchor = [0, 1], motor = { speed = 2, max_torque = 5 }, limits = { lower = -1, upper = 1 } } }
+//! ## kind = { weld = { anchor = [0, 1] } }
+//! ## collide = true                         # else the two pass through each other
 //! "#;
 //! let (scene, settings) = lamina2d::scene::file::parse("slope.toml", text)?;
 //! assert_eq!((scene.bodies.len(), scene.joints.len()), (3, 1));
