@@ -85,6 +85,19 @@ impl Forces {
         Self { gravity: Some([0.0, -9.81]), ..Self::default() }
     }
 
+    /// Names of the fields it has beside gravity: what an engine that knows gravity alone must refuse.
+    pub fn beyond_gravity(&self) -> impl Iterator<Item = &'static str> {
+        let given = [
+            ("wind", self.wind.is_some()),
+            ("linear_drag", self.linear_drag.is_some()),
+            ("quadratic_drag", self.quadratic_drag.is_some()),
+            ("spring", self.spring.is_some()),
+            ("central", self.central.is_some()),
+            ("magnetic", self.magnetic.is_some()),
+        ];
+        given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
+    }
+
     /// Refuses coefficients that cannot be run with in any precision.
     ///
     /// # Errors

@@ -101,16 +101,8 @@ pub(super) fn m_from_px(v: Vec2) -> [f64; 2] {
 /// Gravity in px/s², after every other field has been refused.
 pub(super) fn gravity_px(forces: &Forces) -> Result<Vec2, ThesisError> {
     forces.check()?;
-    let others = [
-        ("wind", forces.wind.is_some()),
-        ("linear_drag", forces.linear_drag.is_some()),
-        ("quadratic_drag", forces.quadratic_drag.is_some()),
-        ("spring", forces.spring.is_some()),
-        ("central", forces.central.is_some()),
-        ("magnetic", forces.magnetic.is_some()),
-    ];
-    match others.into_iter().find(|&(_, given)| given) {
-        Some((field, _)) => Err(ThesisError::Field { field }),
+    match forces.beyond_gravity().next() {
+        Some(field) => Err(ThesisError::Field { field }),
         None => Ok(forces.gravity.map_or(Vec2::ZERO, px_from_m)),
     }
 }

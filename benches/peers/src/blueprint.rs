@@ -67,24 +67,15 @@ impl Blueprint {
         let joints = (world.joints().ids())
             .map(|id| Ok(world.joints().get(id)?.clone()))
             .collect::<anyhow::Result<Vec<_>>>()?;
-        let forces = &scene.forces;
-        let fields = [
-            ("wind", forces.wind.is_some()),
-            ("linear_drag", forces.linear_drag.is_some()),
-            ("quadratic_drag", forces.quadratic_drag.is_some()),
-            ("spring", forces.spring.is_some()),
-            ("central", forces.central.is_some()),
-            ("magnetic", forces.magnetic.is_some()),
-        ];
         let driven = scene.bodies.iter().enumerate().filter(|(_, b)| b.pivot.is_some()).map(|(k, _)| k);
         Ok(Self {
             scene: scene.name.clone(),
             driver: Driver { driven: driven.collect(), bodies: placed.clone() },
             bodies,
             joints,
-            gravity: forces.gravity.unwrap_or([0.0; 2]),
+            gravity: scene.forces.gravity.unwrap_or([0.0; 2]),
             dt_secs: scene.dt_secs,
-            fields: fields.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect(),
+            fields: scene.forces.beyond_gravity().collect(),
         })
     }
 

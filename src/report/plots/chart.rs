@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -104,8 +105,8 @@ pub(super) fn log_log(
 }
 
 /// The names of lines and bars.
-fn legend<'a, C>(
-    chart: &mut ChartContext<'a, SVGBackend<'a>, C>,
+fn legend<'a, 'b: 'a, C>(
+    chart: &mut ChartContext<'a, SVGBackend<'b>, C>,
     place: SeriesLabelPosition,
 ) -> anyhow::Result<()>
 where
@@ -124,6 +125,36 @@ fn label_of(names: &[String]) -> impl Fn(&f64) -> String {
     }
 }
 
+/// A chart whose x axis has a label at each whole number, and whose y axis goes from 0 to `top`.
+fn bar_chart<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    y_label: &str,
+    labels: &[String],
+    top: f64,
+) -> anyhow::Result<ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>> {
+    let groups = labels.len();
+    let mut chart = plot(
+        ChartBuilder::on(area)
+            .caption(title, ("sans-serif", 20))
+            .margin(12)
+            .x_label_area_size(44)
+            .y_label_area_size(60)
+            .build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top),
+    )?;
+    let label = label_of(labels);
+    let mesh = &mut chart.configure_mesh();
+    plot(
+        mesh.disable_x_mesh()
+            .x_labels(groups * 2 + 1)
+            .x_label_formatter(&label)
+            .y_desc(y_label)
+            .light_line_style(TRANSPARENT)
+            .draw(),
+    )?;
+    Ok(chart)
+}
+
 /// Groups of bars: for each label one bar per series.
 pub(super) fn bars(
     title: &str,
@@ -132,26 +163,8 @@ pub(super) fn bars(
     series: &[Series],
 ) -> anyhow::Result<String> {
     let top = series.iter().flat_map(|s| s.points.iter().map(|p| p.1)).fold(0.0, f64::max) * 1.15;
-    let groups = labels.len();
     to_svg(|area| {
-        let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(60)
-                .build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top),
-        )?;
-        let label = label_of(labels);
-        let mesh = &mut chart.configure_mesh();
-        plot(
-            mesh.disable_x_mesh()
-                .x_labels(groups * 2 + 1)
-                .x_label_formatter(&label)
-                .y_desc(y_label)
-                .light_line_style(TRANSPARENT)
-                .draw(),
-        )?;
+        let mut chart = bar_chart(area, title, y_label, labels, top)?;
         let width = 0.8 / series.len() as f64;
         for (k, series) in series.iter().enumerate() {
             let color = PALETTE[k % PALETTE.len()];
@@ -185,24 +198,7 @@ pub(super) fn stacked(
     let height = |x: usize| series.iter().map(|s| s.points[x].1).sum::<f64>();
     let top = (0..groups).map(height).fold(0.0, f64::max) * 1.3;
     to_svg(|area| {
-        let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(60)
-                .build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top),
-        )?;
-        let label = label_of(labels);
-        let mesh = &mut chart.configure_mesh();
-        plot(
-            mesh.disable_x_mesh()
-                .x_labels(groups * 2 + 1)
-                .x_label_formatter(&label)
-                .y_desc(y_label)
-                .light_line_style(TRANSPARENT)
-                .draw(),
-        )?;
+        let mut chart = bar_chart(area, title, y_label, labels, top)?;
         let mut floor = vec![0.0; groups];
         for (k, series) in series.iter().enumerate() {
             let color = PALETTE[k % PALETTE.len()];
