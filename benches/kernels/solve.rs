@@ -110,11 +110,13 @@ impl Stage for Pass {
     fn answer<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &Memory<L>) -> Answer {
         let rows = |state: &State<L>| {
             let motion = &state.motion;
-            let columns = motion.velocity.fours().iter().chain(motion.moved.fours());
+            // A displacement's fourth number says nothing, and is the mass where a lane beside it was visited.
+            let moved = motion.moved.fours().iter().map(|&[x, y, angle, _]| [x, y, angle, 0.0]);
+            let columns = motion.velocity.fours().iter().copied().chain(moved);
             // Rows beside the pairs are where padding lanes write.
             let pairs = state.manifolds.pairs();
             let pairs = state.manifolds.gaps()[..pairs].iter().chain(&state.manifolds.impulses()[..pairs]);
-            columns.chain(pairs).copied().collect::<Vec<[f32; 4]>>()
+            columns.chain(pairs.copied()).collect::<Vec<[f32; 4]>>()
         };
         let (before, after) = (rows(before), rows(now));
         let changed = after.iter().zip(&before).filter(|(after, before)| after != before);
