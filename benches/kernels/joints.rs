@@ -1,12 +1,12 @@
 //! Joints: found where they are, and `soft`'s two passes over them.
 
 use lamina2d::contact::Manifolds;
-use lamina2d::integrate::{self, Motion};
+use lamina2d::integrate;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
 use lamina2d::solve::Solving;
 
-use super::pile::{Pile, task};
+use super::pile::{Memory, Pile, State, task};
 use super::{Kernel, Stage, answer_of, bits, list_widths};
 use crate::common::Answer;
 
@@ -27,21 +27,6 @@ struct Net {
     pile: Pile,
 }
 
-/// What a pass works in.
-#[derive(Clone)]
-struct State<L: Lanes<Elem = f32>> {
-    motion: Motion<f32>,
-    solving: Solving<L>,
-    /// None: nothing touches.
-    manifolds: Manifolds<f32>,
-}
-
-/// As a pass found it, and as it left it.
-struct Memory<L: Lanes<Elem = f32>> {
-    before: State<L>,
-    now: State<L>,
-}
-
 impl Net {
     /// Everything as the part finds it in a step's first substep; the net hangs free: no contact is prepared.
     fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
@@ -51,6 +36,7 @@ impl Net {
         let mut state = State {
             motion: self.pile.motion(),
             solving: Solving::default(),
+            // None: nothing touches.
             manifolds: Manifolds::default(),
         };
         let State { motion, solving, manifolds } = &mut state;
@@ -79,13 +65,11 @@ impl Stage for Net {
     }
 
     fn memory<L: Lanes<Elem = f32>>(&self) -> Memory<L> {
-        let before = self.begin();
-        Memory { now: before.clone(), before }
+        Memory::new(self.begin())
     }
 
-    fn reset<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &mut Memory<L>) {
-        now.solving.clone_from(&before.solving);
-        now.motion.clone_from(&before.motion);
+    fn reset<L: Lanes<Elem = f32>>(&self, memory: &mut Memory<L>) {
+        memory.reset();
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {

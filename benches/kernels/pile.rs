@@ -2,6 +2,7 @@
 
 use lamina2d::body::{Bodies, Form};
 use lamina2d::broad::BroadPhase;
+use lamina2d::contact::Manifolds;
 use lamina2d::force::{Field, Forces};
 use lamina2d::integrate::{Motion, Plan};
 use lamina2d::joint::Joints;
@@ -74,6 +75,35 @@ impl Pile {
             moving: solve::pushes(solver),
             carries: solve::carries_impulses(solver),
         }
+    }
+}
+
+/// What a solver's pass works in.
+#[derive(Clone)]
+pub(super) struct State<L: Lanes<Elem = f32>> {
+    pub(super) motion: Motion<f32>,
+    pub(super) manifolds: Manifolds<f32>,
+    pub(super) solving: Solving<L>,
+}
+
+/// As a pass found it, and as it left it.
+pub(super) struct Memory<L: Lanes<Elem = f32>> {
+    pub(super) before: State<L>,
+    pub(super) now: State<L>,
+}
+
+impl<L: Lanes<Elem = f32>> Memory<L> {
+    /// Before a first call.
+    pub(super) fn new(before: State<L>) -> Self {
+        Self { now: before.clone(), before }
+    }
+
+    /// Back to before the first call, in the same memory.
+    pub(super) fn reset(&mut self) {
+        let Self { before, now } = self;
+        now.solving.clone_from(&before.solving);
+        now.motion.clone_from(&before.motion);
+        now.manifolds.clone_from(&before.manifolds);
     }
 }
 

@@ -1,12 +1,10 @@
 //! One solver's pass over the contacts of a pile, and what it leaves handed back to the pairs.
 
-use lamina2d::contact::Manifolds;
-use lamina2d::integrate::{self, Motion};
+use lamina2d::integrate;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
-use lamina2d::solve::Solving;
 
-use super::pile::{Pile, task};
+use super::pile::{Memory, Pile, State, task};
 use super::{Kernel, SIZES, Stage, answer_of, bits, list_widths};
 use crate::common::Answer;
 
@@ -26,20 +24,6 @@ struct Pass {
     solver: Solver,
     part: Part,
     pile: Pile,
-}
-
-/// What a pass works in.
-#[derive(Clone)]
-struct State<L: Lanes<Elem = f32>> {
-    motion: Motion<f32>,
-    manifolds: Manifolds<f32>,
-    solving: Solving<L>,
-}
-
-/// As a pass found it, and as it left it.
-struct Memory<L: Lanes<Elem = f32>> {
-    before: State<L>,
-    now: State<L>,
 }
 
 impl Pass {
@@ -86,14 +70,11 @@ impl Stage for Pass {
     }
 
     fn memory<L: Lanes<Elem = f32>>(&self) -> Memory<L> {
-        let before = self.begin();
-        Memory { now: before.clone(), before }
+        Memory::new(self.begin())
     }
 
-    fn reset<L: Lanes<Elem = f32>>(&self, Memory { before, now }: &mut Memory<L>) {
-        now.solving.clone_from(&before.solving);
-        now.motion.clone_from(&before.motion);
-        now.manifolds.clone_from(&before.manifolds);
+    fn reset<L: Lanes<Elem = f32>>(&self, memory: &mut Memory<L>) {
+        memory.reset();
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {
