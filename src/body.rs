@@ -216,6 +216,10 @@ impl<R: Real> Bodies<R> {
     pub fn slots(&self) -> impl Iterator<Item = usize> + '_ {
         (1..self.len()).filter(|&slot| self.alive[slot])
     }
+    /// How often the slot has been given anew.
+    pub fn generation(&self, slot: usize) -> u32 {
+        self.generation[slot]
+    }
     /// The id of the living body in a slot.
     pub fn id(&self, slot: usize) -> Option<BodyId> {
         let alive = self.alive.get(slot).copied().unwrap_or(false);
@@ -420,7 +424,12 @@ impl<R: Real> Bodies<R> {
     /// The outline of the body in a slot about its centroid, world axes, in `f64`; empty for circles.
     pub fn outline(&self, slot: usize) -> Vec<[f64; 2]> {
         let (c, s) = (self.c[slot].to_f64(), self.s[slot].to_f64());
-        let body: Vec<[f64; 2]> = match self.form[slot] {
+        self.outline_body(slot).into_iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
+    }
+
+    /// [`Bodies::outline`] in the body frame.
+    pub fn outline_body(&self, slot: usize) -> Vec<[f64; 2]> {
+        match self.form[slot] {
             Form::Circle => Vec::new(),
             Form::Box => {
                 let (hx, hy) = (self.extent_x[slot].to_f64(), self.extent_y[slot].to_f64());
@@ -431,7 +440,6 @@ impl<R: Real> Bodies<R> {
                 let [x, y, ..] = &self.polygons.body[at];
                 (0..self.polygons.count[at] as usize).map(|k| [x[k].to_f64(), y[k].to_f64()]).collect()
             }
-        };
-        body.into_iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
+        }
     }
 }

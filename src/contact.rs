@@ -8,10 +8,13 @@
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
 mod rest;
+mod row;
 mod table;
 
 use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real, set_lanes};
 use table::PairTable;
+
+pub use row::{CONTACT_COLUMNS, ContactRow, GapsAndImpulses};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
 /// is the reference (1: B's), bits 4–6 its edge, bits 1–3 the other's edge, bit 0 which end of it.

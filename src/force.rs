@@ -62,20 +62,25 @@ pub struct Central {
 #[serde(deny_unknown_fields)]
 pub struct Forces {
     /// Uniform acceleration, m/s².
-    #[serde(default, deserialize_with = "pair::optional")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "pair::optional")]
     pub gravity: Option<[f64; 2]>,
     /// Velocity of the air, m/s: both drags act on the velocity relative to it.
-    #[serde(default, deserialize_with = "pair::optional")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "pair::optional")]
     pub wind: Option<[f64; 2]>,
     /// k in F = −k·(v − wind), kg/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear_drag: Option<f64>,
     /// k in F = −k·|v − wind|·(v − wind), kg/m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quadratic_drag: Option<f64>,
     /// F = −stiffness·(x − anchor).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spring: Option<Spring>,
     /// a = −μ·(x − center)/|x − center|³.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub central: Option<Central>,
     /// k in F = k·(`v_y`, −`v_x`), kg/s (charge times a field out of the plane).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic: Option<f64>,
 }
 

@@ -18,6 +18,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
+//! | `record` (feature `record`) | recordings, written and read |
 //! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
@@ -114,6 +115,8 @@ pub mod lanes;
 pub mod measure;
 pub mod narrow;
 mod pair;
+#[cfg(feature = "record")]
+pub mod record;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod scene;
@@ -124,3 +127,15 @@ pub mod solve;
 pub mod thesis;
 pub mod vec2;
 pub mod world;
+
+/// Vector features the code was compiled for.
+#[cfg(feature = "record")]
+pub(crate) fn build_features() -> Vec<&'static str> {
+    let features = [
+        ("sse2", cfg!(target_feature = "sse2")),
+        ("avx", cfg!(target_feature = "avx")),
+        ("avx2", cfg!(target_feature = "avx2")),
+        ("avx512f", cfg!(target_feature = "avx512f")),
+    ];
+    features.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
+}

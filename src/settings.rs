@@ -138,7 +138,8 @@ named_enum! {
 }
 
 /// A set of [`Skip`]s.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Skips(u32);
 
 impl Skips {
@@ -175,6 +176,19 @@ impl std::str::FromStr for Skips {
             "exact" => Ok(Self::EXACT),
             list => list.split(',').try_fold(Self::NONE, |set, name| Ok(set.with(name.trim().parse()?))),
         }
+    }
+}
+
+impl TryFrom<String> for Skips {
+    type Error = UnknownName;
+    fn try_from(given: String) -> Result<Self, UnknownName> {
+        given.parse()
+    }
+}
+
+impl From<Skips> for String {
+    fn from(skips: Skips) -> Self {
+        skips.to_string()
     }
 }
 
@@ -224,10 +238,12 @@ pub enum SettingsError {
     },
 }
 
-/// What a run may choose.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a run may choose; written down as in scene files.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Seconds per step.
+    #[serde(rename = "dt")]
     pub dt_secs: f64,
     /// Smooth motion.
     pub integrator: Integrator,
@@ -242,6 +258,7 @@ pub struct Settings {
     /// The scalar.
     pub precision: Precision,
     /// Work left out where a scene does not need it.
+    #[serde(rename = "skip")]
     pub skips: Skips,
     /// Do fast bodies stop at what is in their way; see [`crate::continuous`].
     pub continuous: bool,
@@ -249,6 +266,7 @@ pub struct Settings {
     pub sleep: bool,
     /// Each island has as many substeps as keep its contacts from sagging by more, metres; see [`crate::solve::pace`].
     /// `substeps` is then what bodies have that touch nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_sag: Option<f64>,
 }
 

@@ -10,7 +10,7 @@ use crate::lanes::{Lanes, Real, f32s, f64s};
 use crate::measure::{self, Counts, Invariants, Outline, Penetration, StageTimes};
 use crate::scene::{BodyKind, Scene};
 use crate::settings::{Broad, Precision, Settings};
-use crate::world::{StepError, World, WorldError};
+use crate::world::{BodyTable, Snapshot, StepError, World, WorldError};
 
 /// One body's state, spelled out in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub trait Simulation: Send {
     fn step(&mut self, dt_secs: f64) -> Result<(), StepError>;
     /// The settings.
     fn settings(&self) -> &Settings;
+    /// Steps taken.
+    fn steps(&self) -> u64;
     /// Living bodies, static ones included.
     fn bodies(&self) -> usize;
     /// The states of living bodies, in slot order.
@@ -62,6 +64,10 @@ pub trait Simulation: Send {
         let states = self.states();
         measure::case_error(scene, t_secs, |body| (states[body].position, states[body].rotation))
     }
+    /// Poses, velocities and, if wanted, contacts as bytes; see [`World::snapshot`].
+    fn snapshot(&self, into: &mut Snapshot, contacts: bool);
+    /// What bodies are, and the fields they move in.
+    fn body_table(&self) -> BodyTable;
     /// The candidate pairs of the last step.
     fn pairs(&self) -> Vec<[u32; 2]>;
     /// The method `auto` stands for here.
@@ -141,6 +147,9 @@ where
     fn settings(&self) -> &Settings {
         self.settings()
     }
+    fn steps(&self) -> u64 {
+        self.steps()
+    }
     fn bodies(&self) -> usize {
         self.bodies().live()
     }
@@ -185,6 +194,12 @@ where
             }
         };
         bodies.slots().map(outline).collect()
+    }
+    fn snapshot(&self, into: &mut Snapshot, contacts: bool) {
+        self.snapshot(into, contacts);
+    }
+    fn body_table(&self) -> BodyTable {
+        self.body_table()
     }
     fn pairs(&self) -> Vec<[u32; 2]> {
         self.pairs().to_vec()

@@ -2,6 +2,7 @@
 
 mod access;
 mod sleep;
+mod snapshot;
 
 use std::time::Instant;
 
@@ -19,6 +20,8 @@ use crate::scene::{Scene, SceneError};
 use crate::settings::{Precision, Settings, SettingsError, Skip};
 use crate::solve::pace::Goal;
 use crate::solve::{self, Solving, Task, Traits};
+
+pub use snapshot::{BodyEntry, BodyTable, COLUMNS, Snapshot};
 
 /// A step that could not be taken to its end.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

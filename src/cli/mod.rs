@@ -8,6 +8,7 @@ mod determinism;
 mod gate;
 mod output;
 pub(crate) mod processor;
+mod recordings;
 mod report;
 mod run;
 mod scenes;
@@ -31,6 +32,14 @@ enum Command {
     Scenes(scenes::Args),
     /// Run a scene, by name or from a TOML file, and report time, counts, errors and state hash.
     Run(run::Args),
+    /// Say what a recording holds.
+    Info(recordings::InfoArgs),
+    /// Run what a recording says was run, and compare every step to the bit.
+    Verify(recordings::VerifyArgs),
+    /// Say where two recordings part, and how they grow apart.
+    Diff(recordings::DiffArgs),
+    /// Write a recording's bodies, contacts or steps as CSV, Parquet or JSON lines.
+    Export(recordings::export::Args),
     /// Time each shape mix × integrator × number of bodies × lanes beside the thesis engine.
     Bench(bench::Args),
     /// Run the thesis's determinism experiment and compare by bits.
@@ -60,6 +69,10 @@ pub(crate) fn main() -> ExitCode {
     let done = match cli.command {
         Command::Scenes(args) => scenes::main(&args),
         Command::Run(args) => run::main(&args),
+        Command::Info(args) => recordings::info(&args),
+        Command::Verify(args) => recordings::verify_file(&args),
+        Command::Diff(args) => recordings::diff(&args),
+        Command::Export(args) => recordings::export::main(&args),
         Command::Bench(args) => bench::main(&args),
         Command::Determinism(args) => determinism::main(&args),
         Command::Gate(args) => gate::main(&args),

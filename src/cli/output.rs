@@ -51,3 +51,44 @@ pub(crate) fn progress(total: u64, what: &'static str) -> ProgressBar {
     }
     bar
 }
+
+/// Says something on stderr that does not end the command.
+pub(crate) fn warn(text: &str) {
+    // Not `eprintln!`, which panics where stderr is closed.
+    let _ = writeln!(std::io::stderr(), "lamina: {text}");
+}
+
+/// Prints an object as a table of fields; inner ones by their paths.
+pub(crate) fn print_fields(object: &Value) -> anyhow::Result<()> {
+    let mut rows = Vec::new();
+    for (key, value) in object.as_object().into_iter().flatten() {
+        flatten(key, value, &mut rows);
+    }
+    print_text(&table(&["field", "value"], rows))
+}
+
+fn flatten(key: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows)),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows));
+        }
+        Value::String(text) => rows.push(vec![key.to_owned(), text.clone()]),
+        Value::Number(n) if n.is_f64() => {
+            rows.push(vec![key.to_owned(), short(n.as_f64().unwrap_or(f64::NAN))]);
+        }
+        other => rows.push(vec![key.to_owned(), other.to_string()]),
+    }
+}
+
+/// Five significant digits, for reading.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || (1e-3..1e6).contains(&magnitude) {
+        let digits =
+            if value == 0.0 { 0 } else { (4 - magnitude.log10().floor() as i32).clamp(0, 6) as usize };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.4e}")
+    }
+}

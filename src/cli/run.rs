@@ -1,9 +1,11 @@
 //! `lamina run`: one scene, once.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::ensure;
 use lamina2d::measure::{Counts, Stage};
+use lamina2d::record::Recorder;
 use lamina2d::report::Timing;
 use lamina2d::scene::{self, Scene};
 use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver};
@@ -61,6 +63,12 @@ pub(crate) struct Args {
     /// Give each island as many substeps as keep its contacts from sagging by more than this, metres.
     #[arg(long, allow_hyphen_values = true)]
     max_sag: Option<f64>,
+    /// Record the run into this file.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Steps from one recorded frame to the next; numbers and hash are recorded at every step.
+    #[arg(long, value_parser = whole::<u64>, default_value_t = 1, requires = "record")]
+    every: u64,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -82,19 +90,34 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
         return Err(refuse(anyhow::anyhow!("--steps must be at least 1, got 0")));
     }
     let mut world = simulate(&scene, settings).map_err(refuse)?;
+    if args.every == 0 {
+        return Err(refuse(anyhow::anyhow!("--every must be at least 1, got 0")));
+    }
+    let recorder =
+        args.record.as_ref().map(|path| Recorder::create(path, &scene, world.as_ref(), args.every));
+    let mut recorder = recorder.transpose().map_err(refuse)?;
     let bar = output::progress(steps, "run");
     let mut samples_ms = Vec::new();
     for step in 0..steps {
         let start = Instant::now();
-        world.step(settings.dt_secs).map_err(|error| name_body(&scene, error))?;
+        let stepped = world.step(settings.dt_secs).map_err(|error| name_body(&scene, error));
         samples_ms.push(start.elapsed().as_secs_f64() * 1e3);
+        if let Some(recorder) = &mut recorder {
+            // The state that ended a run is worth a look.
+            recorder.record(world.as_ref(), stepped.is_err() || step + 1 == steps)?;
+        }
+        stepped?;
         if step % 64 == 0 {
             bar.set_position(step);
         }
     }
     bar.finish_and_clear();
-    let result = describe(&scene, steps, world.as_ref(), &Timing::of(&samples_ms))?;
-    if args.json { output::print_json(&result) } else { print_table(&result) }
+    let recorded = recorder.map(Recorder::finish).transpose()?;
+    let mut result = describe(&scene, steps, world.as_ref(), &Timing::of(&samples_ms))?;
+    if let Some(recorded) = recorded {
+        result.insert("recorded".to_owned(), json!(recorded));
+    }
+    if args.json { output::print_json(&result) } else { output::print_fields(&Value::Object(result)) }
 }
 
 /// Adds the scene, and the body by its number in the scene: the k-th is in slot k + 1.
@@ -227,38 +250,4 @@ fn counted(counts: &Counts) -> Value {
         "substeps": counts.substeps,
         "skipped": skipped,
     })
-}
-
-fn print_table(result: &Map<String, Value>) -> anyhow::Result<()> {
-    let mut rows = Vec::new();
-    for (key, value) in result {
-        flatten(key, value, &mut rows);
-    }
-    output::print_text(&output::table(&["field", "value"], rows))
-}
-
-fn flatten(key: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
-    match value {
-        Value::Object(fields) => fields.iter().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows)),
-        Value::Array(items) => {
-            items.iter().enumerate().for_each(|(k, v)| flatten(&format!("{key}.{k}"), v, rows));
-        }
-        Value::String(text) => rows.push(vec![key.to_owned(), text.clone()]),
-        Value::Number(n) if n.is_f64() => {
-            rows.push(vec![key.to_owned(), short(n.as_f64().unwrap_or(f64::NAN))]);
-        }
-        other => rows.push(vec![key.to_owned(), other.to_string()]),
-    }
-}
-
-/// Five significant digits, for reading.
-fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 || (1e-3..1e6).contains(&magnitude) {
-        let digits =
-            if value == 0.0 { 0 } else { (4 - magnitude.log10().floor() as i32).clamp(0, 6) as usize };
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.4e}")
-    }
 }

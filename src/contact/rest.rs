@@ -26,6 +26,11 @@ impl<R: Real> Rest<R> {
         self.now.ends = [0; 6];
     }
 
+    /// The pairs at rest.
+    pub(super) fn table(&self) -> &PairTable<R> {
+        &self.now
+    }
+
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
         self.now.bytes() + self.before.bytes()

@@ -79,6 +79,11 @@ impl StageTimes {
         *clock = now;
     }
 
+    /// Time of a stage, summed.
+    pub fn total(&self, stage: Stage) -> Duration {
+        self.total[stage as usize]
+    }
+
     /// Mean time of a stage per step, ns.
     pub fn mean_ns(&self, stage: Stage) -> f64 {
         self.total[stage as usize].as_nanos() as f64 / self.steps.max(1) as f64

@@ -86,19 +86,32 @@ pub struct Invariants {
     pub angular_momentum: f64,
 }
 
+impl Invariants {
+    /// Adds a body: mass and inertia, centroid, velocity and angular velocity.
+    pub fn add(
+        &mut self,
+        [mass, inertia]: [f64; 2],
+        [x, y]: [f64; 2],
+        [vx, vy]: [f64; 2],
+        w: f64,
+        forces: &Forces,
+    ) {
+        self.kinetic_energy += 0.5 * (mass * (vx * vx + vy * vy) + inertia * w * w);
+        self.potential_energy += forces.potential_energy(mass, [x, y]);
+        self.momentum[0] += mass * vx;
+        self.momentum[1] += mass * vy;
+        self.angular_momentum += mass * (x * vy - y * vx) + inertia * w;
+    }
+}
+
 /// Energy and momentum of a world's dynamic bodies.
 pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
     let mut sum = Invariants::default();
     for slot in bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO) {
         let read = |column: &Column<R>| column[slot].to_f64();
-        let (mass, inertia) = (1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia));
-        let (x, y, vx, vy, w) =
-            (read(&bodies.x), read(&bodies.y), read(&bodies.vx), read(&bodies.vy), read(&bodies.w));
-        sum.kinetic_energy += 0.5 * (mass * (vx * vx + vy * vy) + inertia * w * w);
-        sum.potential_energy += forces.potential_energy(mass, [x, y]);
-        sum.momentum[0] += mass * vx;
-        sum.momentum[1] += mass * vy;
-        sum.angular_momentum += mass * (x * vy - y * vx) + inertia * w;
+        let matter = [1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia)];
+        let (at, velocity) = ([read(&bodies.x), read(&bodies.y)], [read(&bodies.vx), read(&bodies.vy)]);
+        sum.add(matter, at, velocity, read(&bodies.w), forces);
     }
     sum
 }

@@ -28,12 +28,6 @@ pub struct Machine {
 impl Machine {
     /// This machine and this build.
     pub fn read() -> Self {
-        let features = [
-            ("sse2", cfg!(target_feature = "sse2")),
-            ("avx", cfg!(target_feature = "avx")),
-            ("avx2", cfg!(target_feature = "avx2")),
-            ("avx512f", cfg!(target_feature = "avx512f")),
-        ];
         Self {
             cpu: cpu_name(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
@@ -41,7 +35,7 @@ impl Machine {
             rustc: env!("LAMINA_RUSTC"),
             build: env!("LAMINA_PROFILE"),
             flags: env!("LAMINA_FLAGS"),
-            features: features.into_iter().filter(|f| f.1).map(|f| f.0).collect(),
+            features: crate::build_features(),
             commit: env!("LAMINA_COMMIT"),
             version: env!("CARGO_PKG_VERSION"),
         }

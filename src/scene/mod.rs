@@ -207,7 +207,8 @@ impl BodySpec {
 }
 
 /// What is simulated: bodies in order, the joints between them, and the fields they move in.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Its name, with its parameter: `circles`, `stack/10`.
     pub name: String,

@@ -40,6 +40,7 @@ mod impulse;
 pub mod joint;
 pub mod pace;
 mod pgs;
+mod rows;
 pub mod soft;
 mod solving;
 pub mod stream;

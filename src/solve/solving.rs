@@ -401,10 +401,20 @@ impl<L: Lanes> Solving<L> {
         motion: &Motion<L::Elem>,
     ) -> Manifolds<L::Elem> {
         let mut manifolds = manifolds.clone();
-        if self.latest != Latest::InPairs {
-            self.stream.clone().end_where(false, &mut manifolds, self.latest.yet_to_follow(motion));
+        if !self.pairs_are_up_to_date() {
+            self.stream.clone().end_where(false, &mut manifolds, self.yet_to_follow(motion));
         }
         manifolds
+    }
+
+    /// Do pairs hold today's gaps and impulses? Else constraints do.
+    pub(super) fn pairs_are_up_to_date(&self) -> bool {
+        self.latest == Latest::InPairs
+    }
+
+    /// The displacements that gaps of constraints have yet to hear of.
+    pub(super) fn yet_to_follow<'a>(&self, motion: &'a Motion<L::Elem>) -> Option<&'a [[L::Elem; 4]]> {
+        self.latest.yet_to_follow(motion)
     }
 
     /// Hands impulses and angles back to the joints.

@@ -115,15 +115,32 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         }
     }
 
+    /// A batch's entries, and its slots by value.
+    #[inline(always)]
+    fn ends(&self, at: usize) -> (std::ops::Range<usize>, [u32; 16], [u32; 16]) {
+        let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+        let (mut a, mut b) = ([0; 16], [0; 16]);
+        a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
+        b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
+        (lanes, a, b)
+    }
+
     #[inline(always)]
     fn visit(&mut self, batches: std::ops::Range<usize>, visitor: &mut impl Visit<L>) {
         for at in batches {
-            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-            let (mut a, mut b) = ([0; 16], [0; 16]);
-            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
-            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
+            let (lanes, a, b) = self.ends(at);
             let ends = Ends { place: &self.place[lanes], a: &a, b: &b, fresh: self.fresh[at] };
             visitor.visit(&mut self.constraints[at], ends, at);
+        }
+    }
+
+    /// Visits all, on copies.
+    #[inline(always)]
+    fn look(&self, visitor: &mut impl Visit<L>) {
+        for at in 0..self.len() {
+            let (lanes, a, b) = self.ends(at);
+            let ends = Ends { place: &self.place[lanes], a: &a, b: &b, fresh: self.fresh[at] };
+            visitor.visit(&mut self.constraints[at].clone(), ends, at);
         }
     }
 
@@ -329,6 +346,12 @@ impl<L: Lanes> Stream<L> {
         let store = &mut Store { manifolds, moved };
         self.two.visit_where(touched, store);
         self.one.visit_where(touched, store);
+    }
+
+    /// Reads all batches: `visitor` gets copies.
+    pub fn look(&self, visitor: &mut impl Visit<L>) {
+        self.two.look(visitor);
+        self.one.look(visitor);
     }
 
     /// From now on displacements are news to all constraints.
