@@ -30,6 +30,7 @@ const MATCHED: &[Matched] = &[
     Matched { table: "contacts", key: &["scene", "lanes"], times: &["ms_per_step"] },
     Matched { table: "stability", key: &["scene", "solver", "substeps"], times: &["ms_per_step"] },
     Matched { table: "sleep", key: &["scene", "substeps"], times: &["awake_ms", "asleep_ms"] },
+    Matched { table: "recording", key: &["scene", "state"], times: &["step_ms", "recorded_ms"] },
     Matched { table: "skips", key: &["scene", "integrator", "skip"], times: &["on_ms", "off_ms"] },
     Matched { table: "flight", key: &["bodies", "integrator"], times: &["ns_per_body"] },
 ];

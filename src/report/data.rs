@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::experiments::{
-    broad_phase, contacts, determinism, flight, lanes, limits, matrix, skips, sleep, stability,
+    broad_phase, contacts, determinism, flight, lanes, limits, matrix, recording, skips, sleep, stability,
 };
 use super::headline::{Headline, headlines};
 use super::peers::{self, Peers};
@@ -32,6 +32,8 @@ pub struct Data {
     pub stability: Vec<stability::Row>,
     /// Piles awake and asleep.
     pub sleep: Vec<sleep::Row>,
+    /// What recording costs.
+    pub recording: Vec<recording::Row>,
     /// Each skip on and off.
     pub skips: Vec<skips::Row>,
     /// Free flight against copy bandwidth.
@@ -113,6 +115,13 @@ pub const EXPERIMENTS: &[Experiment] = &[
         },
     },
     Experiment {
+        name: recording::Row::NAME,
+        run: |data, _| {
+            data.recording = recording::run(data.quick)?;
+            Ok(())
+        },
+    },
+    Experiment {
         name: flight::Row::NAME,
         run: |data, _| {
             data.flight = flight::run(if data.quick { 20 } else { 100 })?;
@@ -147,6 +156,7 @@ impl Data {
             sleep: Vec::new(),
             skips: Vec::new(),
             flight: Vec::new(),
+            recording: Vec::new(),
             limits: Vec::new(),
             peers: None,
             instructions: Vec::new(),
@@ -198,6 +208,7 @@ impl Data {
             Table::of(&self.lanes)?,
             Table::of(&self.skips)?,
             Table::of(&self.sleep)?,
+            Table::of(&self.recording)?,
             Table::of(&self.instructions)?,
             Table::of(&limits::shares(self))?,
             Table::of(&self.limits)?,

@@ -55,6 +55,12 @@ const GROUPS: &[Group] = &[
         tables: &["skips", "sleep"],
     },
     Group {
+        title: "Recordings",
+        intro: "What writing every step down costs, and what reading any of it takes.",
+        plots: &[],
+        tables: &["recording"],
+    },
+    Group {
         title: "Instructions",
         intro: "Counted by callgrind, repeatable to the instruction, held by a gate in every check-in.",
         plots: &[],

@@ -11,6 +11,7 @@ pub mod flight;
 pub mod lanes;
 pub mod limits;
 pub mod matrix;
+pub mod recording;
 pub mod skips;
 pub mod sleep;
 pub mod stability;
