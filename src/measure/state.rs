@@ -20,11 +20,17 @@ pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
 /// −0 counts as 0 and every NaN as one: their bits differ between machines that agree in all values.
 pub fn hash_of(values: impl Iterator<Item = f64>) -> u64 {
     let mut hasher = Xxh3Default::new();
+    // A block at a time: a hasher fed with single numbers takes three times as long.
+    let (mut block, mut filled) = ([0u64; 128], 0);
     for value in values {
-        let canonical = if value.is_nan() { f64::NAN } else { value + 0.0 };
-        let bits = if value.is_nan() { 0x7ff8_0000_0000_0000 } else { canonical.to_bits() };
-        hasher.update(&bits.to_le_bytes());
+        block[filled] = if value.is_nan() { 0x7ff8_0000_0000_0000 } else { (value + 0.0).to_bits() };
+        filled += 1;
+        if filled == block.len() {
+            hasher.update(bytemuck::cast_slice(&block));
+            filled = 0;
+        }
     }
+    hasher.update(bytemuck::cast_slice(&block[..filled]));
     hasher.digest()
 }
 

@@ -48,6 +48,10 @@ pub(super) fn damage(what: impl Into<String>) -> Damage {
     Damage::Content(what.into())
 }
 
+/// LZ4 knows levels below 0, each of which skips faster over what does not pack: floats hardly do. A frame of 1000
+/// settled bodies, 131 kB: level 0 takes 0.25 to 0.5 ms and leaves 105 kB, −16 0.24 ms and 119 kB, −32 0.2 ms and 126 kB.
+const LEVEL: i32 = -16;
+
 /// A file being written.
 pub(super) struct Sink<W: Write> {
     writer: Writer<NoSeek<W>>,
@@ -66,6 +70,9 @@ impl<W: Write> Sink<W> {
             .profile("lamina2d")
             .library(format!("lamina2d {}", env!("CARGO_PKG_VERSION")))
             .compression(Some(mcap::Compression::Lz4))
+            .compression_level(LEVEL as u32)
+            // Each chunk has one.
+            .calculate_data_section_crc(false)
             // Chunks are closed here, so that their numbers are known, and written whole.
             .chunk_size(None)
             .disable_seeking(true)

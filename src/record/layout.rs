@@ -245,12 +245,30 @@ impl RecordedContact {
     }
 }
 
-/// Writes a snapshot's contacts in the order of their slots: the order in memory depends on lanes.
-pub(super) fn write_contacts(snapshot: &Snapshot, order: &mut Vec<u32>, out: &mut Vec<u8>) {
+/// The order of contacts by their slots, which in memory depends on lanes; kept while pairs stay as they are.
+#[derive(Debug, Default)]
+pub(super) struct Order {
+    pairs: Vec<[u32; 3]>,
+    order: Vec<u32>,
+}
+
+impl Order {
+    fn of(&mut self, pairs: &[[u32; 3]]) -> &[u32] {
+        if self.pairs != pairs {
+            self.pairs.clear();
+            self.pairs.extend_from_slice(pairs);
+            self.order.clear();
+            self.order.extend(0..pairs.len() as u32);
+            self.order.sort_unstable_by_key(|&at| pairs[at as usize]);
+        }
+        &self.order
+    }
+}
+
+/// Writes a snapshot's contacts in the order of their slots.
+pub(super) fn write_contacts(snapshot: &Snapshot, order: &mut Order, out: &mut Vec<u8>) {
     let (count, width) = (snapshot.pairs.len(), snapshot.width);
-    order.clear();
-    order.extend(0..count as u32);
-    order.sort_unstable_by_key(|&at| snapshot.pairs[at as usize]);
+    let order = order.of(&snapshot.pairs);
     out.clear();
     out.reserve(16 + count * (12 + CONTACT_COLUMNS.len() * width));
     out.extend_from_slice(&snapshot.step.to_le_bytes());
@@ -260,7 +278,7 @@ pub(super) fn write_contacts(snapshot: &Snapshot, order: &mut Vec<u32>, out: &mu
         out.extend(order.iter().flat_map(|&at| snapshot.pairs[at as usize][column].to_le_bytes()));
     }
     for column in 0..CONTACT_COLUMNS.len() {
-        for &at in &*order {
+        for &at in order {
             let entry = (at as usize * CONTACT_COLUMNS.len() + column) * width;
             out.extend_from_slice(&snapshot.contacts[entry..entry + width]);
         }

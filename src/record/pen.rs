@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::container::{Sink, WriteError};
-use super::layout::{StepRow, Topic, write_contacts, write_frame};
+use super::layout::{Order, StepRow, Topic, write_contacts, write_frame};
 use super::recorder::{Job, Recorded};
 use super::recording::Contents;
 use super::sums::Sums;
@@ -23,7 +23,7 @@ pub(super) struct Pen<W: Write> {
     block: Vec<(StepRow, u32)>,
     contents: Contents,
     recorded: Recorded,
-    order: Vec<u32>,
+    order: Order,
     bytes: Vec<u8>,
 }
 
@@ -48,7 +48,7 @@ impl<W: Write> Pen<W> {
             block: Vec::new(),
             contents: Contents::default(),
             recorded: Recorded::default(),
-            order: Vec::new(),
+            order: Order::default(),
             bytes: Vec::new(),
         })
     }

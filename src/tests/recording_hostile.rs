@@ -165,7 +165,7 @@ fn a_contact_of_no_body_is_refused() -> Outcome {
             }
             true
         })?;
-        let said = read_all(&path, &changed).err().expect("an error");
+        let said = read_all(&path, &changed).expect_err("an error");
         assert!(said.contains(mention), "no '{mention}' in '{said}'");
     }
     Ok(())
@@ -201,7 +201,7 @@ fn a_missing_message_is_made_good_or_named() -> Outcome {
 fn a_file_without_checksums_is_refused() -> Outcome {
     let (_folder, path, bytes) = good()?;
     let changed = rewrite(&bytes, packed().calculate_chunk_crcs(false), |_, _| true)?;
-    let said = read_all(&path, &changed).err().expect("an error");
+    let said = read_all(&path, &changed).expect_err("an error");
     assert!(said.contains("head is damaged"), "{said}");
     // Other tools may have taken the packing away: that is no damage.
     let unpacked = rewrite(&bytes, WriteOptions::new().compression(None), |_, _| true)?;
