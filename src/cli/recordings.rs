@@ -14,11 +14,6 @@ use super::{output, refuse};
 /// Rows of a table of growth.
 const GROWTH_ROWS: usize = 12;
 
-/// Two runs are not the same: exit code 1, as of `diff`.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-struct Differs(String);
-
 /// Arguments of `lamina info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
@@ -129,7 +124,7 @@ pub(crate) fn verify_file(args: &VerifyArgs) -> anyhow::Result<()> {
             output::print_text(&said)?;
         }
     }
-    ensure!(!parted, Differs(format!("{}: the run is not the one recorded", args.file.display())));
+    ensure!(!parted, "{}: the run is not the one recorded", args.file.display());
     Ok(())
 }
 
@@ -174,10 +169,7 @@ pub(crate) fn diff(args: &DiffArgs) -> anyhow::Result<()> {
             output::print_text(&growth_table(&growth))?;
         }
     }
-    ensure!(
-        difference.is_none() && lengths[0] == lengths[1],
-        Differs("the two recordings are not the same".to_owned())
-    );
+    ensure!(difference.is_none() && lengths[0] == lengths[1], "the two recordings are not the same");
     Ok(())
 }
 

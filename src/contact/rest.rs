@@ -31,6 +31,11 @@ impl<R: Real> Rest<R> {
         &self.now
     }
 
+    /// Places of those that touch.
+    pub(super) fn touching(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.now.ends[5]).filter(|&at| Code::of(self.now.code[at]).points() > 0)
+    }
+
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
         self.now.bytes() + self.before.bytes()
@@ -111,9 +116,7 @@ impl<R: Real> Manifolds<R> {
     /// Slots of the pairs that touch and whose bodies all sleep or cannot move.
     pub fn resting(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         let table = &self.rest.now;
-        (0..table.ends[5])
-            .filter(|&at| Code::of(table.code[at]).points() > 0)
-            .map(|at| [table.a[at], table.b[at]])
+        self.rest.touching().map(|at| [table.a[at], table.b[at]])
     }
 
     /// How many those are.

@@ -67,7 +67,6 @@ impl<R: Real> Manifolds<R> {
 
     /// The touching pairs of what sleeps.
     pub fn resting_rows(&self) -> impl Iterator<Item = ContactRow<R>> + '_ {
-        let table = self.rest.table();
-        (0..table.ends[5]).filter(|&at| Code::of(table.code[at]).points() > 0).map(|at| table.own_row(at))
+        self.rest.touching().map(|at| self.rest.table().own_row(at))
     }
 }

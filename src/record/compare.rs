@@ -37,8 +37,7 @@ impl Difference {
     fn look(&mut self, a: &Frame, b: &Frame) {
         self.frame_step = Some(a.step);
         for slot in 1..=a.alive.len().max(b.alive.len()) {
-            let lives = |frame: &Frame| frame.alive.get(slot - 1).is_some_and(|alive| *alive);
-            let found = match (lives(a), lives(b)) {
+            let found = match (a.lives(slot), b.lives(slot)) {
                 (true, true) => COLUMNS.iter().enumerate().find_map(|(column, name)| {
                     let values = [a.get(column, slot), b.get(column, slot)];
                     differ(values[0], values[1]).then_some((*name, values))
@@ -76,9 +75,8 @@ impl Apart {
     pub fn of(a: &Frame, b: &Frame) -> Self {
         let mut apart = Self { step: a.step, time_secs: a.time_secs, ..Self::default() };
         for slot in 1..=a.alive.len().max(b.alive.len()) {
-            let lives = |frame: &Frame| frame.alive.get(slot - 1).is_some_and(|alive| *alive);
-            if !(lives(a) && lives(b)) {
-                apart.bodies += usize::from(lives(a) != lives(b));
+            if !(a.lives(slot) && b.lives(slot)) {
+                apart.bodies += usize::from(a.lives(slot) != b.lives(slot));
                 continue;
             }
             let change = |column: usize| b.get(column, slot) - a.get(column, slot);
@@ -116,13 +114,12 @@ pub fn first_difference(a: &mut Recording, b: &mut Recording) -> Result<Option<D
 
 /// The frames of steps from `from` on that both recordings have.
 pub fn common_frames(a: &Recording, b: &Recording, from: u64) -> Vec<[usize; 2]> {
-    let begin = (0..a.frames()).find(|frame| a.step_of(*frame) >= Some(from)).unwrap_or(a.frames());
     let pair = |frame: usize| {
         let step = a.step_of(frame)?;
         let other = b.frame_at(step)?;
         (b.step_of(other) == Some(step)).then_some([frame, other])
     };
-    (begin..a.frames()).filter_map(pair).collect()
+    (a.frame_from(from)..a.frames()).filter_map(pair).collect()
 }
 
 /// Runs what a recording says was run, at another lane width if one is given, and compares every step by its hash;
@@ -165,19 +162,15 @@ fn name_difference(
     dt_secs: f64,
 ) -> Result<Difference, RecordError> {
     let mut difference = Difference::at(step);
-    let frame = (0..recording.frames()).find(|frame| recording.step_of(*frame) >= Some(step));
-    if let Some(frame) = frame {
+    let frame = recording.frame_from(step);
+    if frame < recording.frames() {
         let recorded = recording.frame(frame)?.frame;
         advance(world, recorded.step, dt_secs);
         let (mut snapshot, mut bytes) = (Snapshot::default(), Vec::new());
         world.snapshot(&mut snapshot, false);
         write_frame(&snapshot, recorded.time_secs, &mut bytes);
-        let lost = |why: super::container::Damage| refused_frame(recording, step, &why);
-        difference.look(&recorded, &Frame::read(&bytes).map_err(lost)?);
+        let again = Frame::read(&bytes).map_err(|why| RecordError::frame(recording.path(), step, &why))?;
+        difference.look(&recorded, &again);
     }
     Ok(difference)
-}
-
-fn refused_frame(recording: &Recording, step: u64, why: &super::container::Damage) -> RecordError {
-    RecordError::Frame { path: recording.path().to_owned(), step, why: why.to_string() }
 }

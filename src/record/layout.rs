@@ -198,6 +198,11 @@ impl Frame {
         from.end("a frame").map(|()| frame)
     }
 
+    /// Does a body live in a slot, of those the frame has and of any other?
+    pub fn lives(&self, slot: usize) -> bool {
+        slot.checked_sub(1).and_then(|at| self.alive.get(at)).is_some_and(|alive| *alive)
+    }
+
     /// Slots of living bodies, ascending.
     pub fn slots(&self) -> impl Iterator<Item = usize> + '_ {
         self.alive.iter().enumerate().filter(|(_, alive)| **alive).map(|(at, _)| at + 1)

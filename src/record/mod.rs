@@ -210,6 +210,9 @@ impl RecordError {
     fn io(path: &Path, why: std::io::Error) -> Self {
         Self::Io { path: path.to_owned(), why }
     }
+    fn frame(path: &Path, step: u64, why: &container::Damage) -> Self {
+        Self::Frame { path: path.to_owned(), step, why: why.to_string() }
+    }
     fn unreadable(path: &Path, why: &container::Damage) -> Self {
         Self::Unreadable { path: path.to_owned(), why: why.to_string() }
     }

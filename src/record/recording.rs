@@ -151,6 +151,10 @@ impl Recording {
     pub fn frame_at(&self, step: u64) -> Option<usize> {
         self.frames.partition_point(|(known, _)| *known <= step).checked_sub(1)
     }
+    /// The first frame at or after a step; [`Recording::frames`] if there is none.
+    pub fn frame_from(&self, step: u64) -> usize {
+        self.frames.partition_point(|(known, _)| *known < step)
+    }
     /// The numbers of a step.
     pub fn row(&self, step: u64) -> Option<&StepRow> {
         self.rows.binary_search_by_key(&step, |row| row.step).ok().map(|at| &self.rows[at])
@@ -167,8 +171,7 @@ impl Recording {
     pub fn frame(&mut self, frame: usize) -> Result<FrameData, RecordError> {
         let missing = || RecordError::NoFrame { frame, frames: self.frames.len() };
         let (step, chunk) = *self.frames.get(frame).ok_or_else(missing)?;
-        let read = self.read_frame(step, chunk);
-        read.map_err(|why| RecordError::Frame { path: self.path.clone(), step, why: why.to_string() })
+        self.read_frame(step, chunk).map_err(|why| RecordError::frame(&self.path, step, &why))
     }
 
     fn read_frame(&mut self, step: u64, chunk: u32) -> Result<FrameData, Damage> {
@@ -186,8 +189,8 @@ impl Recording {
                 _ => {}
             }
         }
-        let lives =
-            |slot: &u32| *slot == 0 || data.frame.alive.get(*slot as usize - 1).is_some_and(|alive| *alive);
+        // Slot 0 is the world.
+        let lives = |slot: &u32| *slot == 0 || data.frame.lives(*slot as usize);
         if !found {
             return Err(damage("its chunk does not hold it"));
         }
@@ -202,26 +205,26 @@ impl Recording {
     /// # Errors
     /// A chunk that is damaged.
     pub fn bodies(&mut self, step: u64) -> Result<&BodyTable, RecordError> {
-        let at = self.bodies.partition_point(|(since, _)| *since <= step).checked_sub(1);
-        let lost = |why: Damage| RecordError::Frame { path: self.path.clone(), step, why: why.to_string() };
-        let (since, chunk) =
-            at.map(|at| self.bodies[at]).ok_or_else(|| lost(damage("no bodies are known")))?;
-        if self.table.as_ref().is_none_or(|(known, _)| *known != since) {
-            let tables = self.chunk(chunk).and_then(|messages| {
-                let tables = messages.iter().filter(|message| message.topic == Topic::Bodies);
-                tables.map(|message| read_table(&message.data)).collect::<Result<Vec<_>, _>>()
-            });
-            let found = tables.map(|tables| tables.into_iter().rfind(|table| table.step == since));
-            let path = &self.path;
-            let lost = |why: Damage| RecordError::Frame { path: path.clone(), step, why: why.to_string() };
-            let table = found
-                .map_err(lost)?
-                .ok_or_else(|| lost(damage("its bodies are not where they should be")))?;
-            self.table = Some((since, table));
+        if let Err(why) = self.read_bodies(step) {
+            return Err(RecordError::frame(&self.path, step, &why));
         }
-        let missing =
-            RecordError::Frame { path: self.path.clone(), step, why: "no bodies are known".to_owned() };
-        self.table.as_ref().map(|(_, table)| table).ok_or(missing)
+        let missing = || RecordError::frame(&self.path, step, &damage("no bodies are known"));
+        self.table.as_ref().map(|(_, table)| table).ok_or_else(missing)
+    }
+
+    /// Brings the table of a step into memory.
+    fn read_bodies(&mut self, step: u64) -> Result<(), Damage> {
+        let at = self.bodies.partition_point(|(since, _)| *since <= step).checked_sub(1);
+        let (since, chunk) = at.map(|at| self.bodies[at]).ok_or_else(|| damage("no bodies are known"))?;
+        if self.table.as_ref().is_none_or(|(known, _)| *known != since) {
+            let messages = self.chunk(chunk)?;
+            let tables = messages.iter().filter(|message| message.topic == Topic::Bodies);
+            let tables = tables.map(|message| read_table(&message.data)).collect::<Result<Vec<_>, _>>()?;
+            let table = tables.into_iter().rfind(|table| table.step == since);
+            self.table =
+                Some((since, table.ok_or_else(|| damage("its bodies are not where they should be"))?));
+        }
+        Ok(())
     }
 
     fn chunk(&mut self, chunk: u32) -> Result<&[Message], Damage> {

@@ -93,7 +93,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     } else if args.json {
         Box::new(Lines { out, header, whole })
     } else {
-        Box::new(Parquet::new(out, &header, whole)?)
+        Box::new(Parquet::new(out, &header)?)
     };
     write_rows(args.rows, &mut recording, table.as_mut())?;
     table.end()
@@ -183,7 +183,7 @@ struct Parquet {
 }
 
 impl Parquet {
-    fn new(out: Box<dyn Write + Send>, header: &[&str], _whole: usize) -> anyhow::Result<Self> {
+    fn new(out: Box<dyn Write + Send>, header: &[&str]) -> anyhow::Result<Self> {
         let field = |name: &&str| {
             let field =
                 Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(Repetition::REQUIRED);
