@@ -16,6 +16,7 @@
 
 mod check;
 mod grow;
+mod kind;
 mod polygons;
 
 use std::ops::Range;

@@ -203,12 +203,7 @@ impl<R: Real> Joints<R> {
         }
         checker.check::<R>(&kind)?;
         let poses = [pose(bodies, a), pose(bodies, b)];
-        let given = match &kind {
-            JointKind::Distance(distance) => [distance.anchor_a, distance.anchor_b],
-            JointKind::Revolute(Revolute { anchor, .. }) | JointKind::Weld(Weld { anchor, .. }) => {
-                [Some(*anchor); 2]
-            }
-        };
+        let given = kind.anchors();
         let world = [0, 1].map(|k| given[k].map_or(poses[k].0, |[x, y]| Vec2::new(x, y)));
         let anchors_body = [0, 1].map(|k| {
             let local = poses[k].1.apply_inverse(world[k] - poses[k].0);

@@ -18,8 +18,9 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `record` (feature `record`) | recordings, written and read |
+//! | `record`, `processor` (feature `record`) | recordings, written and read; the check that programs make first |
 //! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
+//! | [`session`] | a run that is acted upon, and done again from its events |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
@@ -116,10 +117,13 @@ pub mod measure;
 pub mod narrow;
 mod pair;
 #[cfg(feature = "record")]
+pub mod processor;
+#[cfg(feature = "record")]
 pub mod record;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod scene;
+pub mod session;
 pub mod settings;
 pub mod shape;
 pub mod simulation;

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     // Before anything that might use an instruction this processor does not have.
-    if let Err(sentence) = cli::processor::check() {
-        eprintln!("{sentence}");
+    if let Err(sentence) = lamina2d::processor::check() {
+        eprintln!("lamina: {sentence}");
         return ExitCode::from(2);
     }
     cli::main()

@@ -1,14 +1,14 @@
 //! A world behind one interface, whatever its precision and lane width: what the program, the benches
 //! and the tests drive. The width is chosen here, once, and nowhere else.
 
-use crate::body::{Bodies, Form};
+use crate::body::{Bodies, BodyError, BodyId, Form};
 use crate::broad::BroadPhase;
 use crate::contact::Contact;
 use crate::force::Forces;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real, f32s, f64s};
 use crate::measure::{self, Counts, Invariants, Outline, Penetration, StageTimes};
-use crate::scene::{BodyKind, Scene};
+use crate::scene::{BodyKind, BodySpec, Scene};
 use crate::settings::{Broad, Precision, Settings};
 use crate::world::{BodyTable, Snapshot, StepError, World, WorldError};
 
@@ -23,6 +23,21 @@ pub struct BodyState {
     pub velocity: [f64; 2],
     /// rad/s.
     pub angular_velocity: f64,
+}
+
+/// One body: which it is, its state, and what moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyView {
+    /// Its id.
+    pub id: BodyId,
+    /// Static, kinematic or dynamic.
+    pub kind: BodyKind,
+    /// Pose and velocity.
+    pub state: BodyState,
+    /// 1/kg; 0 where nothing can push it.
+    pub inv_mass: f64,
+    /// 1/(kg·m²); 0 where nothing can turn it.
+    pub inv_inertia: f64,
 }
 
 /// A world of any precision and lane width.
@@ -68,6 +83,38 @@ pub trait Simulation: Send {
     fn snapshot(&self, into: &mut Snapshot, contacts: bool);
     /// What bodies are, and the fields they move in.
     fn body_table(&self) -> BodyTable;
+    /// The body in a slot; `None` where none lives.
+    fn body(&self, slot: usize) -> Option<BodyView>;
+    /// Takes a body in; see [`World::insert`].
+    ///
+    /// # Errors
+    /// Those of [`World::insert`].
+    fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError>;
+    /// Takes a body out; see [`World::remove`].
+    ///
+    /// # Errors
+    /// An id whose body is gone.
+    fn remove(&mut self, id: BodyId) -> Result<(), BodyError>;
+    /// Makes a body static, kinematic or dynamic; see [`World::set_kind`].
+    ///
+    /// # Errors
+    /// Those of [`World::set_kind`].
+    fn set_kind(&mut self, id: BodyId, kind: BodyKind, mass: Option<f64>) -> Result<(), BodyError>;
+    /// Adds an impulse, N·s and N·m·s; see [`World::apply_impulse`].
+    ///
+    /// # Errors
+    /// Those of [`World::apply_impulse`].
+    fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError>;
+    /// Sets the fields; see [`World::set_forces`].
+    ///
+    /// # Errors
+    /// Fields that cannot be run with.
+    fn set_forces(&mut self, forces: Forces) -> Result<(), WorldError>;
+    /// Goes on with other settings; see [`World::set_settings`].
+    ///
+    /// # Errors
+    /// Those of [`World::set_settings`].
+    fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError>;
     /// The candidate pairs of the last step.
     fn pairs(&self) -> Vec<[u32; 2]>;
     /// The method `auto` stands for here.
@@ -137,6 +184,16 @@ impl IntoWorld for (Bodies<f64>, Joints<f64>) {
     }
 }
 
+/// The state of the body in a slot.
+fn state<R: Real>(bodies: &Bodies<R>, slot: usize) -> BodyState {
+    BodyState {
+        position: [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()],
+        rotation: [bodies.c[slot].to_f64(), bodies.s[slot].to_f64()],
+        velocity: [bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64()],
+        angular_velocity: bodies.w[slot].to_f64(),
+    }
+}
+
 impl<L: Lanes> Simulation for World<L>
 where
     (Bodies<L::Elem>, Joints<L::Elem>): IntoWorld,
@@ -154,14 +211,31 @@ where
         self.bodies().live()
     }
     fn states(&self) -> Vec<BodyState> {
+        self.bodies().slots().map(|slot| state(self.bodies(), slot)).collect()
+    }
+    fn body(&self, slot: usize) -> Option<BodyView> {
         let bodies = self.bodies();
-        let read = |slot: usize| BodyState {
-            position: [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()],
-            rotation: [bodies.c[slot].to_f64(), bodies.s[slot].to_f64()],
-            velocity: [bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64()],
-            angular_velocity: bodies.w[slot].to_f64(),
-        };
-        bodies.slots().map(read).collect()
+        let id = bodies.id(slot)?;
+        let (inv_mass, inv_inertia) = (bodies.inv_mass[slot].to_f64(), bodies.inv_inertia[slot].to_f64());
+        Some(BodyView { id, kind: bodies.kind(slot), state: state(bodies, slot), inv_mass, inv_inertia })
+    }
+    fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
+        self.insert(spec)
+    }
+    fn remove(&mut self, id: BodyId) -> Result<(), BodyError> {
+        self.remove(id)
+    }
+    fn set_kind(&mut self, id: BodyId, kind: BodyKind, mass: Option<f64>) -> Result<(), BodyError> {
+        self.set_kind(id, kind, mass)
+    }
+    fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
+        self.apply_impulse(id, linear, angular)
+    }
+    fn set_forces(&mut self, forces: Forces) -> Result<(), WorldError> {
+        Ok(self.set_forces(forces)?)
+    }
+    fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
+        self.set_settings(settings)
     }
     fn contacts(&self) -> Vec<Contact> {
         self.contacts()

@@ -62,6 +62,14 @@ pub enum WorldError {
         /// What was asked for.
         asked: Precision,
     },
+    /// A running world keeps its lane width.
+    #[error("a world of {have} lanes cannot become one of {asked}")]
+    Lanes {
+        /// What it is built on.
+        have: usize,
+        /// What was asked for.
+        asked: usize,
+    },
 }
 
 /// What a step found before bodies move.
@@ -103,6 +111,8 @@ pub struct World<L: Lanes> {
     regrouped: bool,
     /// How often it has.
     groupings: u64,
+    /// How often other fields were set.
+    fields_set: u64,
     steps: u64,
     counts: Counts,
     times: StageTimes,
@@ -161,6 +171,7 @@ impl<L: Lanes> World<L> {
             islands: Islands::default(),
             regrouped: false,
             groupings: 0,
+            fields_set: 0,
             steps: 0,
             counts: Counts::default(),
             times: StageTimes::default(),

@@ -7,7 +7,6 @@ mod bench;
 mod determinism;
 mod gate;
 mod output;
-pub(crate) mod processor;
 mod recordings;
 mod report;
 mod run;

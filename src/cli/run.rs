@@ -130,18 +130,7 @@ fn name_body(scene: &Scene, error: StepError) -> anyhow::Error {
 }
 
 fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
-    let is_file =
-        std::path::Path::new(&args.scene).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    let (scene, asked) = if is_file {
-        if args.bodies.is_some() {
-            return Err(refuse(anyhow::anyhow!("--bodies: a scene file has the bodies it lists")));
-        }
-        scene::file::read(&args.scene).map_err(refuse)?
-    } else {
-        let scene = scene::by_name(&args.scene, args.bodies, args.seed).map_err(refuse)?;
-        let settings = Settings { dt_secs: scene.dt_secs, ..Settings::default() };
-        (scene, settings)
-    };
+    let (scene, asked) = scene::load(&args.scene, args.bodies, args.seed).map_err(refuse)?;
     let precision = args.precision.unwrap_or(asked.precision);
     let default_lanes =
         if precision == asked.precision { asked.lanes } else { asked.with_precision(precision).lanes };

@@ -128,6 +128,14 @@ impl JointKind {
         Self::Revolute(Revolute { anchor, motor: None, limits: None })
     }
 
+    /// Where it holds A and B, metres, world; `None`: at the centroid.
+    pub fn anchors(&self) -> [Option<[f64; 2]>; 2] {
+        match self {
+            Self::Distance(distance) => [distance.anchor_a, distance.anchor_b],
+            Self::Revolute(Revolute { anchor, .. }) | Self::Weld(Weld { anchor, .. }) => [Some(*anchor); 2],
+        }
+    }
+
     /// A rod between the centroids, as long as they are apart.
     pub fn rod() -> Self {
         Self::Distance(Distance::default())

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::layout::{Frame, write_frame};
 use super::{RecordError, Recording};
+use crate::session::Session;
 use crate::settings::Settings;
-use crate::simulation::{Simulation, simulate};
 use crate::world::{COLUMNS, Snapshot};
 
 /// The first thing that differs.
@@ -134,40 +134,38 @@ pub fn verify(
 ) -> Result<Option<Difference>, RecordError> {
     let settings = recording.info().settings;
     let settings = Settings { lanes: lanes.unwrap_or(settings.lanes), ..settings };
-    let refused = |why: String| RecordError::Run { path: recording.path().to_owned(), why };
-    let mut world = simulate(recording.scene(), settings).map_err(|why| refused(why.to_string()))?;
+    let mut session = Session::new(recording.scene(), settings)
+        .map_err(|why| RecordError::Run { path: recording.path().to_owned(), why: why.to_string() })?;
     let rows: Vec<_> = recording.rows().iter().map(|row| (row.step, row.hash)).collect();
     for (step, hash) in rows {
-        advance(world.as_mut(), step, settings.dt_secs);
-        if world.hash() != hash {
-            return Ok(Some(name_difference(recording, world.as_mut(), step, settings.dt_secs)?));
+        follow(&mut session, recording, step)?;
+        if session.world().hash() != hash {
+            return name_difference(recording, &mut session, step).map(Some);
         }
         tell(step);
     }
     Ok(None)
 }
 
-/// Steps up to a step. A state that is not finite was recorded as such: it is compared like any other.
-fn advance(world: &mut dyn Simulation, step: u64, dt_secs: f64) {
-    while world.steps() < step {
-        let _ = world.step(dt_secs);
-    }
+/// Advances to a step, doing what was done.
+fn follow(session: &mut Session, recording: &Recording, to: u64) -> Result<(), RecordError> {
+    let followed = session.follow(recording.events(), to);
+    followed.map_err(|why| RecordError::event(recording.path(), session.world().steps(), &why))
 }
 
 /// Looks in the first frame from `step` on.
 fn name_difference(
     recording: &mut Recording,
-    world: &mut dyn Simulation,
+    session: &mut Session,
     step: u64,
-    dt_secs: f64,
 ) -> Result<Difference, RecordError> {
     let mut difference = Difference::at(step);
     let frame = recording.frame_from(step);
     if frame < recording.frames() {
         let recorded = recording.frame(frame)?.frame;
-        advance(world, recorded.step, dt_secs);
+        follow(session, recording, recorded.step)?;
         let (mut snapshot, mut bytes) = (Snapshot::default(), Vec::new());
-        world.snapshot(&mut snapshot, false);
+        session.world().snapshot(&mut snapshot, false);
         write_frame(&snapshot, recorded.time_secs, &mut bytes);
         let again = Frame::read(&bytes).map_err(|why| RecordError::frame(recording.path(), step, &why))?;
         difference.look(&recorded, &again);

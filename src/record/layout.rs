@@ -15,7 +15,7 @@ pub(super) enum Topic {
     Scene,
     /// [`super::BodyTable`], JSON: where bodies come, go, or change what they are.
     Bodies,
-    /// [`super::Event`], JSON: what was done to the world before the step after it.
+    /// [`crate::session::Event`], JSON: what was done to the world before the step after it.
     Event,
     /// [`Frame`].
     Frame,

@@ -8,6 +8,7 @@
 //! | `/run` | JSON | once | [`RunInfo`]: format, version, commit, compiler, settings, seed |
 //! | `/scene` | JSON | once | the [`Scene`], as scene files have it |
 //! | `/bodies` | JSON | where they change | shapes, kinds and masses by slot ([`BodyTable`](crate::world::BodyTable)) |
+//! | `/event` | JSON | after a step | what was done to the world before the next ([`Event`](crate::session::Event)) |
 //! | `/frame` | bytes | every k-th step | columns of all bodies ([`Frame`]) |
 //! | `/contacts` | bytes | every k-th step | touching pairs ([`RecordedContact`]) |
 //! | `/step` | bytes | each step | hash, stage times, counts, energy, momentum, overlap ([`StepRow`]) |
@@ -53,6 +54,7 @@ mod pen;
 mod recorder;
 mod recording;
 mod sums;
+mod tape;
 
 use std::path::{Path, PathBuf};
 
@@ -60,6 +62,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::CONTACT_COLUMNS;
 use crate::scene::Scene;
+use crate::session::ActionError;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
 use crate::world::COLUMNS;
@@ -68,6 +71,7 @@ pub use compare::{Apart, Difference, common_frames, first_difference, verify};
 pub use layout::{Frame, RecordedContact, STATISTICS, StepRow};
 pub use recorder::{Recorded, Recorder, part_of};
 pub use recording::{FrameData, Loss, Recording};
+pub use tape::{Tape, save};
 
 /// The format written. A newer one is refused.
 pub const FORMAT: u32 = 1;
@@ -106,7 +110,8 @@ pub struct RunInfo {
 }
 
 impl RunInfo {
-    fn of(scene: &Scene, world: &dyn Simulation, every: u64) -> Self {
+    /// What a recording of `scene`, begun with the settings of `world`, says of itself.
+    pub fn of(scene: &Scene, world: &dyn Simulation, every: u64) -> Self {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         Self {
             format: FORMAT,
@@ -212,6 +217,9 @@ impl RecordError {
     }
     fn frame(path: &Path, step: u64, why: &container::Damage) -> Self {
         Self::Frame { path: path.to_owned(), step, why: why.to_string() }
+    }
+    fn event(path: &Path, step: u64, why: &ActionError) -> Self {
+        Self::Run { path: path.to_owned(), why: format!("what was done after step {step} cannot be: {why}") }
     }
     fn unreadable(path: &Path, why: &container::Damage) -> Self {
         Self::Unreadable { path: path.to_owned(), why: why.to_string() }

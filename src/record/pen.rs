@@ -67,6 +67,14 @@ impl<W: Write> Pen<W> {
                 self.sums.take(table);
                 Ok(())
             }
+            Job::Event(event) => {
+                let json = serde_json::to_vec(event).map_err(std::io::Error::other)?;
+                let chunk = self.sink.chunk();
+                if self.contents.events.last() != Some(&chunk) {
+                    self.contents.events.push(chunk);
+                }
+                self.sink.put(Topic::Event, event.step, self.time(event.step), &json)
+            }
             Job::Step { snapshot, frame } => self.step(snapshot, *frame),
         }
     }

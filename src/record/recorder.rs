@@ -12,6 +12,7 @@ use super::container::WriteError;
 use super::pen::Pen;
 use super::{RecordError, RunInfo};
 use crate::scene::Scene;
+use crate::session::Event;
 use crate::simulation::Simulation;
 use crate::world::{BodyTable, Snapshot};
 
@@ -35,6 +36,8 @@ pub struct Recorded {
 pub(super) enum Job {
     /// Bodies are others from here on.
     Bodies(Box<BodyTable>),
+    /// Something was done to the world.
+    Event(Box<Event>),
     /// A step, whole as a `frame` or by its numbers alone.
     Step { snapshot: Box<Snapshot>, frame: bool },
 }
@@ -46,7 +49,7 @@ pub struct Recorder {
     used: Receiver<Box<Snapshot>>,
     writer: Option<JoinHandle<Result<Recorded, RecordError>>>,
     every: u64,
-    known: Option<[u64; 2]>,
+    known: Option<[u64; 3]>,
 }
 
 impl Recorder {
@@ -93,6 +96,14 @@ impl Recorder {
             self.send(Job::Bodies(Box::new(world.body_table())))?;
         }
         self.send(Job::Step { snapshot, frame })
+    }
+
+    /// Takes down something that was done to the world after the step recorded last.
+    ///
+    /// # Errors
+    /// A disk that said no: at this or at an earlier step.
+    pub fn event(&mut self, event: &Event) -> Result<(), RecordError> {
+        self.send(Job::Event(Box::new(event.clone())))
     }
 
     fn send(&mut self, job: Job) -> Result<(), RecordError> {

@@ -10,6 +10,7 @@ use super::container::{Damage, Message, Source, damage};
 use super::layout::{Bytes, Frame, RecordedContact, StepRow, Topic, read_contacts};
 use super::{FORMAT, NO_FRAME, RecordError, RunInfo};
 use crate::scene::Scene;
+use crate::session::Event;
 use crate::world::BodyTable;
 
 /// What lies where; the last message of a whole file.
@@ -19,6 +20,9 @@ pub(super) struct Contents {
     pub(super) index: Vec<u32>,
     /// Steps from which bodies are others, and the chunks of their tables.
     pub(super) bodies: Vec<(u64, u32)>,
+    /// Chunks that hold events.
+    #[serde(default)]
+    pub(super) events: Vec<u32>,
     /// Step rows.
     pub(super) steps: u64,
     /// Frames.
@@ -62,6 +66,7 @@ pub struct Recording {
     /// Steps with a frame, and the chunks these are in.
     frames: Vec<(u64, u32)>,
     bodies: Vec<(u64, u32)>,
+    events: Vec<Event>,
     loss: Option<Loss>,
     /// The chunk read last.
     cached: Option<(u32, Vec<Message>)>,
@@ -95,7 +100,7 @@ impl Recording {
         let first = source.read(0).map_err(refused)?;
         let info = read_info(path, &first)?;
         let scene: Scene = json(&first, Topic::Scene).map_err(refused)?;
-        let Index { rows, frames, bodies } = index;
+        let Index { rows, frames, bodies, events } = index;
         let recording = Self {
             path: path.to_owned(),
             source,
@@ -104,6 +109,7 @@ impl Recording {
             rows,
             frames,
             bodies,
+            events,
             loss,
             cached: None,
             table: None,
@@ -112,11 +118,12 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Steps ascend, and so do frames, which are of recorded steps.
+    /// Steps ascend, and so do frames and events.
     fn check_order(&self) -> Result<(), Damage> {
         let rows = self.rows.iter().map(|row| row.step).is_sorted_by(|a, b| a < b);
         let frames = self.frames.iter().map(|(step, _)| step).is_sorted_by(|a, b| a < b);
-        if rows && frames { Ok(()) } else { Err(damage("its steps are out of order")) }
+        let events = self.events.iter().map(|event| event.step).is_sorted();
+        if rows && frames && events { Ok(()) } else { Err(damage("its steps are out of order")) }
     }
 
     /// Where it lies.
@@ -158,6 +165,10 @@ impl Recording {
     /// The numbers of a step.
     pub fn row(&self, step: u64) -> Option<&StepRow> {
         self.rows.binary_search_by_key(&step, |row| row.step).ok().map(|at| &self.rows[at])
+    }
+    /// What was done to the world, in order.
+    pub fn events(&self) -> &[Event] {
+        &self.events
     }
     /// How far the file is good, if it is not whole.
     pub fn loss(&self) -> Option<&Loss> {
@@ -242,6 +253,7 @@ struct Index {
     rows: Vec<StepRow>,
     frames: Vec<(u64, u32)>,
     bodies: Vec<(u64, u32)>,
+    events: Vec<Event>,
 }
 
 impl Index {
@@ -258,6 +270,11 @@ fn read_index(source: &mut Source) -> Result<Index, Damage> {
     let last = source.chunks().checked_sub(1).ok_or_else(|| damage("it has no chunks"))?;
     let contents: Contents = json(&source.read(last)?, Topic::Contents)?;
     let mut index = Index { bodies: contents.bodies, ..Index::default() };
+    for chunk in contents.events {
+        for message in source.read(chunk as usize)?.iter().filter(|message| message.topic == Topic::Event) {
+            index.events.push(parse(&message.data)?);
+        }
+    }
     for chunk in contents.index {
         for message in source.read(chunk as usize)?.iter().filter(|message| message.topic == Topic::Index) {
             let mut from = Bytes(&message.data);
@@ -279,11 +296,12 @@ fn read_index(source: &mut Source) -> Result<Index, Damage> {
 fn scan(source: &mut Source, why: &Damage) -> (Index, Option<Loss>) {
     let mut index = Index::default();
     let (good_bytes, ended) = source.scan(|chunk, messages| {
-        let (mut rows, mut frames, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut rows, mut frames, mut bodies, mut events) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for message in messages {
             match message.topic {
                 Topic::Step => rows.push(StepRow::read(&message.data)?),
                 Topic::Frame => frames.push((Frame::step_of(&message.data)?, chunk)),
+                Topic::Event => events.push(parse(&message.data)?),
                 Topic::Bodies => bodies.push((parse::<BodyTable>(&message.data)?.step, chunk)),
                 _ => {}
             }
@@ -292,6 +310,7 @@ fn scan(source: &mut Source, why: &Damage) -> (Index, Option<Loss>) {
         index.rows.append(&mut rows);
         index.frames.append(&mut frames);
         index.bodies.append(&mut bodies);
+        index.events.append(&mut events);
         Ok(())
     });
     let why = ended.map_or_else(|| why.to_string(), |ended| ended.to_string());

@@ -146,6 +146,11 @@ fn grid_cells(bodies: usize, pitch: f64, scale: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// A polygon of the mixes, by a seed: six vertices on a circle of 0.8 to 1.2 m.
+pub fn polygon(seed: u64) -> ShapeSpec {
+    random_hexagon(&mut Pcg32::seed_from_u64(seed))
+}
+
 /// Six vertices at i·60° ± 30° on a circle of 20 to 30 px.
 ///
 /// Two neighbours may come arbitrarily close at random; such a draw is taken again, as is one whose

@@ -12,6 +12,8 @@ pub mod mixes;
 pub mod named;
 mod stacks;
 
+use std::path::Path;
+
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +23,8 @@ use crate::pair::{self, Pair};
 use crate::shape::{Shape, ShapeError};
 
 pub use named::{SCENES, SceneInfo, by_name};
+
+use crate::settings::Settings;
 
 /// What forces and contacts may do to a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -235,6 +239,24 @@ impl Scene {
     }
 }
 
+/// The scene that `given` names, with the settings it asks for: a path that ends in `.toml`, or a name, see
+/// [`by_name`].
+///
+/// # Errors
+/// Those of [`by_name`] and [`file::read`]; a number of bodies for a file, which has the bodies it lists.
+pub fn load(given: &str, bodies: Option<usize>, seed: u64) -> Result<(Scene, Settings), SceneError> {
+    let is_file = Path::new(given).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    match bodies {
+        None if is_file => file::read(given),
+        Some(_) if is_file => Err(SceneError::BodiesOfFile(given.to_owned())),
+        _ => {
+            let scene = by_name(given, bodies, seed)?;
+            let settings = Settings { dt_secs: scene.dt_secs, ..Settings::default() };
+            Ok((scene, settings))
+        }
+    }
+}
+
 /// Why a scene was refused: the item, the field, the value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
@@ -266,6 +288,9 @@ pub enum SceneError {
         /// What was given.
         given: usize,
     },
+    /// The number of bodies of a file cannot be set.
+    #[error("--bodies: a scene file has the bodies it lists: {0}")]
+    BodiesOfFile(String),
     /// A file could not be read.
     #[error("cannot read scene file {path}: {why}")]
     Unreadable {

@@ -1,11 +1,11 @@
 //! A world between steps: bodies and joints come and go, and everything it holds can be looked at.
 
-use super::World;
+use super::{World, WorldError};
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::contact::{Contact, Manifolds};
 use crate::force::Forces;
 use crate::joint::{JointError, JointId, JointKind, Joints};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, StageTimes, state_hash};
 use crate::scene::{BodyKind, BodySpec};
 use crate::settings::Settings;
@@ -34,6 +34,38 @@ impl<L: Lanes> World<L> {
             self.wake_what_rested_on(id.slot());
         }
         self.joints.prune(&self.bodies);
+        Ok(())
+    }
+
+    /// Makes a body static, kinematic or dynamic and wakes all; see [`Bodies::set_kind`]. Joints between bodies of which
+    /// none is dynamic hold nothing until one is.
+    ///
+    /// # Errors
+    /// Those of [`Bodies::set_kind`].
+    pub fn set_kind(&mut self, id: BodyId, kind: BodyKind, mass: Option<f64>) -> Result<(), BodyError> {
+        self.bodies.set_kind(id, kind, mass)?;
+        self.islands.wake_all();
+        Ok(())
+    }
+
+    /// Goes on with other settings. Impulses that contacts and joints carried are forgotten, steps and times are not.
+    ///
+    /// # Errors
+    /// Settings that cannot be run with, or of another precision or lane width.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
+        settings.check()?;
+        let have = <L::Elem as Real>::NAME;
+        if settings.precision.name() != have {
+            return Err(WorldError::Precision { have, asked: settings.precision });
+        }
+        if settings.lanes != L::WIDTH {
+            return Err(WorldError::Lanes { have: L::WIDTH, asked: settings.lanes });
+        }
+        let bodies = std::mem::take(&mut self.bodies);
+        let joints = std::mem::take(&mut self.joints).without_impulses();
+        let (steps, times, fields_set) = (self.steps, self.times, self.fields_set);
+        let anew = Self::from_parts(bodies, joints, self.forces, settings)?;
+        *self = Self { steps, times, fields_set, ..anew };
         Ok(())
     }
 

@@ -118,6 +118,7 @@ impl<L: Lanes> World<L> {
     pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
         forces.check_in::<L::Elem>()?;
         self.forces = forces;
+        self.fields_set += 1;
         self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));
         self.islands.wake_all();
         Ok(())

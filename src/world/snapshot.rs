@@ -5,7 +5,6 @@ use bytemuck::{bytes_of, cast_slice};
 use serde::{Deserialize, Serialize};
 
 use super::World;
-use crate::body::Form;
 use crate::contact::ContactRow;
 use crate::force::Forces;
 use crate::lanes::{Lanes, Real};
@@ -38,8 +37,9 @@ pub struct Snapshot {
     pub counts: Counts,
     /// Stage times, summed since they were last set to zero.
     pub times: StageTimes,
-    /// Changes of which bodies there are, of their masses and forces; see [`crate::body::Bodies::revision`].
-    pub revision: [u64; 2],
+    /// Changes of which bodies there are, of their masses and forces, see [`crate::body::Bodies::revision`], and of
+    /// the fields.
+    pub revision: [u64; 3],
 }
 
 impl<L: Lanes> World<L> {
@@ -53,7 +53,7 @@ impl<L: Lanes> World<L> {
         into.slots = slots;
         into.counts = self.counts;
         into.times = self.times;
-        into.revision = [bodies.revision(), bodies.removals()];
+        into.revision = [bodies.revision(), bodies.removals(), self.fields_set];
         into.columns.clear();
         for column in [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w] {
             into.columns.extend_from_slice(cast_slice(&column.as_slice()[1..=slots]));
@@ -113,23 +113,16 @@ impl<L: Lanes> World<L> {
     pub fn body_table(&self) -> BodyTable {
         let bodies = &self.bodies;
         let inverse = |value: L::Elem| if value > L::Elem::ZERO { 1.0 / value.to_f64() } else { 0.0 };
-        let entry = |slot: usize| {
-            let extent = [bodies.extent_x[slot].to_f64(), bodies.extent_y[slot].to_f64()];
-            BodyEntry {
-                slot: slot as u32,
-                generation: bodies.generation(slot),
-                kind: bodies.kind(slot),
-                shape: match bodies.form(slot) {
-                    Form::Circle => ShapeSpec::Circle(extent[0]),
-                    Form::Box => ShapeSpec::Box(extent),
-                    Form::Polygon => ShapeSpec::Polygon(bodies.outline_body(slot)),
-                },
-                radius: bodies.radius[slot].to_f64(),
-                mass: inverse(bodies.inv_mass[slot]),
-                inertia: inverse(bodies.inv_inertia[slot]),
-                friction: bodies.friction[slot].to_f64(),
-                restitution: bodies.restitution[slot].to_f64(),
-            }
+        let entry = |slot: usize| BodyEntry {
+            slot: slot as u32,
+            generation: bodies.generation(slot),
+            kind: bodies.kind(slot),
+            shape: bodies.shape_spec(slot),
+            radius: bodies.radius[slot].to_f64(),
+            mass: inverse(bodies.inv_mass[slot]),
+            inertia: inverse(bodies.inv_inertia[slot]),
+            friction: bodies.friction[slot].to_f64(),
+            restitution: bodies.restitution[slot].to_f64(),
         };
         BodyTable { step: self.steps, bodies: bodies.slots().map(entry).collect(), forces: self.forces }
     }

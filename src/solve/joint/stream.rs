@@ -197,10 +197,13 @@ impl<L: Lanes> JointStream<L> {
         let of_color = |color: usize| {
             let pick = |rod: bool| -> Vec<u32> {
                 let is_awake = |id: BodyId| awake.is_none_or(|awake| awake[id.slot()]);
+                // Between two bodies that nothing moves there is nothing to hold.
+                let moves = |id: BodyId| bodies.kind(id.slot()) == BodyKind::Dynamic;
                 let good = |(place, joint): &(u32, &Joint)| {
                     colors[*place as usize] as usize == color
                         && matches!(joint.kind, JointKind::Distance(_)) == rod
                         && joint.bodies.into_iter().any(is_awake)
+                        && joint.bodies.into_iter().any(moves)
                 };
                 joints.living().filter(good).map(|(place, _)| place).collect()
             };

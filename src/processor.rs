@@ -3,10 +3,13 @@
 //! `is_x86_feature_detected!` answers from the compiler's flags where they promise a feature, so the
 //! processor itself is asked.
 
-/// Refuses a processor without the features this build relies on.
+/// Refuses a processor without the features this build relies on; programs ask before all else.
+///
+/// # Errors
+/// A sentence that says what is missing and what to do.
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 #[inline(never)]
-pub(crate) fn check() -> Result<(), &'static str> {
+pub fn check() -> Result<(), &'static str> {
     let cpu = raw_cpuid::CpuId::new();
     let avx =
         cpu.get_feature_info().is_some_and(|f| f.has_avx() && f.has_fma() && f.has_movbe() && f.has_oxsave());
@@ -14,7 +17,7 @@ pub(crate) fn check() -> Result<(), &'static str> {
     if avx && avx2 {
         Ok(())
     } else {
-        Err("lamina: this program was built for x86-64-v3 (AVX2), which this processor does not have; \
+        Err("this program was built for x86-64-v3 (AVX2), which this processor does not have; \
              rebuild it with RUSTFLAGS=\"-C target-cpu=x86-64\"")
     }
 }
@@ -22,6 +25,6 @@ pub(crate) fn check() -> Result<(), &'static str> {
 /// Other builds rely on nothing beyond their target's baseline.
 #[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
 #[expect(clippy::unnecessary_wraps, reason = "one signature for all targets")]
-pub(crate) fn check() -> Result<(), &'static str> {
+pub fn check() -> Result<(), &'static str> {
     Ok(())
 }
