@@ -4,10 +4,12 @@ use std::path::Path;
 
 use eframe::egui::{self, Panel};
 use lamina2d::record::Difference;
+use lamina2d::session::{Action, ActionError};
 
 use crate::canvas::{self, Camera};
 use crate::command::{BINDINGS, Command};
 use crate::events::{self, Mark};
+use crate::live::{Live, Tool};
 use crate::pane::Pane;
 use crate::panels;
 use crate::panels::curves::Curves;
@@ -30,6 +32,8 @@ pub enum Tab {
     Run,
     /// How two runs differ.
     Compare,
+    /// What is done to a running world.
+    Live,
 }
 
 /// Everything behind the window.
@@ -63,6 +67,10 @@ pub struct Viewer {
     pub help: bool,
     /// Is the view to be fitted to the bodies at the next drawing?
     pub fit: bool,
+    /// What a click on the canvas does to a running world.
+    pub tool: Tool,
+    /// Pictures per second, of late.
+    pub fps: f64,
     /// The scale egui was told last.
     scaled: Option<f32>,
 }
@@ -81,6 +89,43 @@ impl Viewer {
         let source = Replay::open(path)?;
         self.set_source(Box::new(source));
         Ok(())
+    }
+
+    /// Shows a running world in place of what is open.
+    pub fn set_live(&mut self, live: Live) {
+        self.set_source(Box::new(live));
+        self.tab = Tab::Live;
+        self.follow_live();
+    }
+
+    /// The running world, if one is open.
+    pub fn live(&mut self) -> Option<&mut Live> {
+        self.panes.first_mut().and_then(|pane| pane.source.live())
+    }
+
+    /// Shows a running world as it is now.
+    pub fn follow_live(&mut self) {
+        if self.live().is_none() {
+            return;
+        }
+        if let Some(pane) = self.panes.first_mut() {
+            let source = &pane.source;
+            self.playback.follow(source.first()..source.frames(), |frame| source.time_of(frame));
+            pane.refresh();
+        }
+    }
+
+    /// Does something to the running world, as it is now, and says so where that cannot be.
+    pub fn act<T>(&mut self, action: impl FnOnce(&mut Live) -> Result<T, ActionError>) -> Option<T> {
+        let done = self.live().map(action)?;
+        self.follow_live();
+        match done {
+            Ok(done) => Some(done),
+            Err(why) => {
+                self.error = Some(why.to_string());
+                None
+            }
+        }
     }
 
     /// Opens a recording beside the first, or as the first if there is none.
@@ -144,12 +189,23 @@ impl Viewer {
 
     /// Does what a key or a button asks for.
     pub fn run(&mut self, command: Command) {
+        let at_present = self.playback.at_present();
         let playback = &mut self.playback;
         match command {
-            Command::Play => playback.toggle(),
-            Command::Step(by) => playback.step(by.into()),
+            Command::Play => {
+                playback.toggle();
+                if at_present && !playback.playing() {
+                    self.find_marks();
+                }
+            }
+            Command::Step(by) => {
+                playback.step(by.into());
+                if by > 0 && at_present {
+                    self.step_live();
+                }
+            }
             Command::Jump(by) => playback.jump(f64::from(by) * 0.1),
-            Command::First => playback.go_to(0),
+            Command::First => playback.go_to(playback.first()),
             Command::Last => playback.go_to(playback.last()),
             Command::Speed(by) => {
                 let at = SPEEDS.iter().position(|speed| *speed >= playback.speed).unwrap_or(SPEEDS.len() - 1);
@@ -160,7 +216,49 @@ impl Viewer {
             Command::Follow => self.view.follow = !self.view.follow,
             Command::Deselect => self.selected = None,
             Command::Help => self.help = !self.help,
+            Command::Use(tool) => self.tool = tool,
+            Command::Pin => {
+                if let Some(slot) = self.selected {
+                    self.act(|live| live.toggle_static(slot));
+                }
+            }
+            Command::Delete => {
+                if let Some(slot) = self.selected
+                    && self.act(|live| live.act(Action::Remove { slot: slot as u32 })).is_some()
+                {
+                    self.selected = None;
+                }
+            }
         }
+    }
+
+    fn step_live(&mut self) {
+        if let Some(live) = self.live() {
+            live.step();
+        }
+        self.follow_live();
+        self.tell_stop();
+    }
+
+    /// Pauses, and says so, where a running world has stopped by itself.
+    fn tell_stop(&mut self) {
+        if let Some(why) = self.live().and_then(|live| live.stopped().map(str::to_owned)) {
+            self.playback.pause();
+            self.error = Some(format!("it has stopped: {why}"));
+            self.find_marks();
+        }
+    }
+
+    /// Lets time pass: a running world steps, a recording moves on.
+    fn pass(&mut self, elapsed_secs: f64) {
+        let speed = self.playback.speed;
+        let Some(taken) = self.live().map(|live| live.advance(elapsed_secs, speed)) else {
+            return self.playback.advance(elapsed_secs);
+        };
+        if taken > 0 {
+            self.follow_live();
+        }
+        self.tell_stop();
     }
 
     /// The step of the frame that is shown.
@@ -196,10 +294,13 @@ impl Viewer {
         for (at, path) in dropped.iter().map(|file| file.path()).take(2).enumerate() {
             self.try_open(path, at == 1);
         }
+        let elapsed = ctx.input(|input| f64::from(input.stable_dt)).min(LONGEST_SECS);
         if self.playback.playing() {
-            let elapsed = ctx.input(|input| f64::from(input.stable_dt));
-            self.playback.advance(elapsed.min(LONGEST_SECS));
+            self.fps = if elapsed > 0.0 { 0.9 * self.fps + 0.1 / elapsed } else { self.fps };
+            self.pass(elapsed);
             canvas::again(ctx);
+        } else {
+            self.fps = 0.0;
         }
     }
 
@@ -245,6 +346,11 @@ impl Viewer {
 impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+    }
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        if let Some(Err(why)) = self.live().map(Live::finish) {
+            eprintln!("lamina-viewer: {why}");
+        }
     }
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, STORED, &self.view);

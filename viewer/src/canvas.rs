@@ -7,6 +7,7 @@ mod brush;
 mod camera;
 mod contacts;
 mod grid;
+mod joints;
 mod legend;
 mod palette;
 mod trails;
@@ -58,6 +59,7 @@ pub fn paint(painter: &Painter, scenery: &Scenery<'_>, pane: &Pane, twin: Option
         bodies::draw(&mut brush, scenery, twin, 0.3);
         bodies::connect(&mut brush, scenery, pane, twin);
     }
+    joints::draw(&mut brush, scenery, pane);
     contacts::draw(&mut brush, scenery, pane);
     painter.add(Shape::mesh(brush.finish()));
     let font = FontId::proportional(10.5);

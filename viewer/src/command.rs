@@ -2,6 +2,8 @@
 
 use eframe::egui::{Key, Modifiers};
 
+use crate::live::Tool;
+
 /// Something a key or a button asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
@@ -27,6 +29,12 @@ pub enum Command {
     Deselect,
     /// Show the keys, or hide them.
     Help,
+    /// In a running world: what a click does.
+    Use(Tool),
+    /// In a running world: makes the selected body static, or dynamic.
+    Pin,
+    /// In a running world: takes the selected body out.
+    Delete,
 }
 
 /// A key and what it does.
@@ -53,7 +61,7 @@ const fn shifted(key: Key, command: Command, keys: &'static str, about: &'static
 }
 
 /// All keys. Those with shift come before their plain ones, which would take them.
-pub const BINDINGS: [Binding; 18] = [
+pub const BINDINGS: [Binding; 24] = [
     bind(Key::Space, Command::Play, "space", "play or pause"),
     bind(Key::Comma, Command::Step(-1), ",", "a frame back"),
     bind(Key::Period, Command::Step(1), ".", "a frame on"),
@@ -73,4 +81,10 @@ pub const BINDINGS: [Binding; 18] = [
     // Some layouts tell of the key, not of the sign.
     shifted(Key::Slash, Command::Help, "", ""),
     bind(Key::F1, Command::Help, "F1", "show or hide this list"),
+    bind(Key::H, Command::Use(Tool::Hand), "H", "running world: the hand, which selects and pulls"),
+    bind(Key::C, Command::Use(Tool::Circle), "C", "running world: a click puts a circle there"),
+    bind(Key::B, Command::Use(Tool::Box), "B", "running world: a click puts a box there"),
+    bind(Key::P, Command::Use(Tool::Polygon), "P", "running world: a click puts a polygon there"),
+    bind(Key::S, Command::Pin, "S", "running world: the selected body static, or dynamic"),
+    bind(Key::Delete, Command::Delete, "delete", "running world: take the selected body out"),
 ];

@@ -16,6 +16,7 @@ pub mod app;
 pub mod canvas;
 pub mod command;
 pub mod events;
+pub mod live;
 pub mod pane;
 pub mod panels;
 pub mod playback;
@@ -25,4 +26,5 @@ pub mod source;
 pub mod view;
 
 pub use app::Viewer;
+pub use live::Live;
 pub use source::{Replay, Source, SourceError};

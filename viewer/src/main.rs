@@ -7,10 +7,11 @@ use std::process::ExitCode;
 
 use anyhow::{anyhow, bail, ensure};
 use clap::Parser;
-use lamina_viewer::Viewer;
 use lamina_viewer::app::stored_view;
 use lamina_viewer::screenshot::{Camera, MOST_PIXELS, write_png, write_sequence};
 use lamina_viewer::view::{Arrangement, Colour, TrailsOf, View};
+use lamina_viewer::{Live, Viewer};
+use lamina2d::scene;
 
 /// Shows recordings of lamina2d frame by frame; two of them side by side.
 #[derive(Debug, Parser)]
@@ -21,10 +22,22 @@ struct Args {
     file: Option<PathBuf>,
     /// Another one, shown at the same steps.
     file2: Option<PathBuf>,
+    /// Run this scene: its name, `name/parameter`, or the path of a .toml file; see `lamina scenes`.
+    #[arg(long, value_name = "SCENE", conflicts_with_all = ["file", "file2", "sequence"])]
+    live: Option<String>,
+    /// Number of bodies of the scene, as it takes it.
+    #[arg(long, value_name = "N", requires = "live")]
+    bodies: Option<usize>,
+    /// Where the scene's random numbers come from.
+    #[arg(long, value_name = "N", requires = "live", default_value_t = 1)]
+    seed: u64,
+    /// Record what happens, and what is done, as it happens.
+    #[arg(long, value_name = "FILE", requires = "live")]
+    record: Option<PathBuf>,
     /// Write a picture of the window (PNG) and end; no display is needed.
     #[arg(long, value_name = "OUT", conflicts_with = "sequence")]
     screenshot: Option<PathBuf>,
-    /// The frame to show first, from 0.
+    /// The frame to show first, from 0; with --live so many steps are taken first.
     #[arg(long, value_name = "N", conflicts_with = "frames")]
     frame: Option<usize>,
     /// Frames of a sequence, B not included.
@@ -91,6 +104,17 @@ fn choose(args: &Args, view: &mut View) {
 /// Opens what was named; what is damaged is said.
 fn load(args: &Args) -> anyhow::Result<Viewer> {
     let mut viewer = Viewer::default();
+    if let Some(name) = &args.live {
+        let (scene, settings) = scene::load(name, args.bodies, args.seed)?;
+        let mut live = Live::new(scene, settings, args.record.clone())?;
+        for _ in 0..args.frame.unwrap_or(0) {
+            if !live.step() {
+                break;
+            }
+        }
+        viewer.set_live(live);
+        return Ok(viewer);
+    }
     if let Some(path) = &args.file {
         viewer.open(path)?;
     }
@@ -159,6 +183,10 @@ fn run(args: &Args, mut viewer: Viewer) -> anyhow::Result<()> {
 }
 
 fn main() -> ExitCode {
+    if let Err(sentence) = lamina2d::processor::check() {
+        eprintln!("lamina-viewer: {sentence}");
+        return ExitCode::from(2);
+    }
     let args = Args::parse();
     let (why, code) = match load(&args) {
         Err(why) => (why, 2),

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use lamina2d::joint::JointSpec;
 use lamina2d::record::{Frame, FrameData};
 use lamina2d::scene::{BodyKind, ShapeSpec};
 use lamina2d::world::{BodyEntry, BodyTable};
@@ -46,6 +47,15 @@ pub struct Pane {
     trail_failed: Option<usize>,
     /// Why the frame shown is not the one asked for.
     error: Option<String>,
+    joints: Vec<JointEnds>,
+}
+
+/// Where a joint of the scene holds its bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct JointEnds {
+    slots: [usize; 2],
+    /// Metres from each body's centroid, in its own axes.
+    anchors_body: [[f64; 2]; 2],
 }
 
 impl Pane {
@@ -64,8 +74,10 @@ impl Pane {
             trail: VecDeque::new(),
             trail_failed: None,
             error: None,
+            joints: Vec::new(),
         };
-        pane.show(0);
+        pane.show(pane.source.first());
+        pane.joints = pane.find_joints();
         pane
     }
 
@@ -77,6 +89,49 @@ impl Pane {
         }
         self.shown = Some(frame);
         self.error = self.read(frame).err().map(|why| why.to_string());
+    }
+
+    /// Forgets which frame is shown: it may be another one now.
+    pub fn refresh(&mut self) {
+        self.shown = None;
+    }
+
+    /// The scene's joints, by the poses of its first frame, from which their anchors go with the bodies.
+    fn find_joints(&self) -> Vec<JointEnds> {
+        if self.error.is_some() || self.frame().step != 0 {
+            return Vec::new();
+        }
+        let ends = |joint: &JointSpec| {
+            let slots = joint.bodies.map(|body| body + 1);
+            let given = joint.kind.anchors();
+            let mut anchors_body = [[0.0; 2]; 2];
+            for k in 0..2 {
+                let centroid = self.position(slots[k])?;
+                let [dx, dy] = given[k].map_or([0.0; 2], |at| [at[0] - centroid[0], at[1] - centroid[1]]);
+                let [c, s] = [column::COS, column::SIN].map(|at| self.frame().get(at, slots[k]));
+                anchors_body[k] = [c * dx + s * dy, c * dy - s * dx];
+            }
+            Some(JointEnds { slots, anchors_body })
+        };
+        self.source.scene().joints.iter().filter_map(ends).collect()
+    }
+
+    /// Where the scene's joints hold their bodies A and B now, and these bodies' centroids, metres: of those whose bodies
+    /// are both still there.
+    pub fn joints(&self) -> impl Iterator<Item = ([[f64; 2]; 2], [[f64; 2]; 2])> + '_ {
+        self.joints.iter().filter_map(|joint| {
+            let (mut held, mut centroids) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+            for k in 0..2 {
+                let slot = joint.slots[k];
+                // Another body may have the slot by now.
+                self.entry(slot).filter(|body| body.generation == 0)?;
+                centroids[k] = self.position(slot)?;
+                let [c, s] = [column::COS, column::SIN].map(|at| self.frame().get(at, slot));
+                let [x, y] = joint.anchors_body[k];
+                held[k] = [centroids[k][0] + c * x - s * y, centroids[k][1] + s * x + c * y];
+            }
+            Some((held, centroids))
+        })
     }
 
     fn read(&mut self, frame: usize) -> Result<(), SourceError> {
@@ -135,8 +190,7 @@ impl Pane {
     /// Where a living body's centroid is, metres.
     pub fn position(&self, slot: usize) -> Option<[f64; 2]> {
         let frame = &self.data.frame;
-        let lives = slot > 0 && frame.alive.get(slot - 1).is_some_and(|alive| *alive);
-        lives.then(|| [frame.get(column::X, slot), frame.get(column::Y, slot)])
+        frame.lives(slot).then(|| [frame.get(column::X, slot), frame.get(column::Y, slot)])
     }
 
     /// The body a point lies in, metres; of several the smallest.
@@ -154,7 +208,7 @@ impl Pane {
             self.trail.clear();
             return;
         }
-        let first = shown.saturating_sub(length);
+        let first = shown.saturating_sub(length).max(self.source.first());
         let follows = self.trail.back().is_some_and(|(last, _)| (first..=shown).contains(last));
         if !follows {
             self.trail.clear();

@@ -6,11 +6,14 @@ pub mod compare;
 pub mod curves;
 pub mod inspector;
 pub mod keys;
+pub mod live;
 pub mod metadata;
 pub mod stage;
 pub mod timeline;
 
 use eframe::egui::{Grid, Response, Role, ScrollArea, Ui, WidgetInfo};
+
+use lamina2d::settings::Settings;
 
 use crate::app::{Tab, Viewer};
 
@@ -18,7 +21,9 @@ use crate::app::{Tab, Viewer};
 pub fn details(ui: &mut Ui, viewer: &mut Viewer) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        for (tab, name) in [(Tab::Body, "Body"), (Tab::Run, "Run"), (Tab::Compare, "Compare")] {
+        let live = viewer.live().is_some().then_some((Tab::Live, "Live"));
+        let tabs = [(Tab::Body, "Body"), (Tab::Run, "Run"), (Tab::Compare, "Compare")];
+        for (tab, name) in live.into_iter().chain(tabs) {
             ui.selectable_value(&mut viewer.tab, tab, name);
         }
     });
@@ -28,6 +33,7 @@ pub fn details(ui: &mut Ui, viewer: &mut Viewer) {
             Tab::Body => inspector::show(ui, viewer),
             Tab::Run => metadata::show(ui, viewer),
             Tab::Compare => compare::show(ui, viewer),
+            Tab::Live => live::show(ui, viewer),
         }
     });
 }
@@ -35,6 +41,26 @@ pub fn details(ui: &mut Ui, viewer: &mut Viewer) {
 /// Gives a control the name that readers of screens say.
 fn name(response: &Response, role: Role, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(role, true, name));
+}
+
+/// Settings by the names they have on the command line and in scene files.
+fn settings_named(settings: &Settings) -> Vec<(&'static str, String)> {
+    vec![
+        ("integrator", settings.integrator.to_string()),
+        ("solver", settings.solver.to_string()),
+        ("substeps", settings.substeps.to_string()),
+        (
+            "max sag",
+            settings.max_sag.map_or_else(|| "unbounded".to_owned(), |sag| format!("{} m", number(sag))),
+        ),
+        ("step", format!("{} s", number(settings.dt_secs))),
+        ("broad phase", settings.broad.to_string()),
+        ("precision", settings.precision.to_string()),
+        ("lanes", settings.lanes.to_string()),
+        ("skips", settings.skips.to_string()),
+        ("continuous", settings.continuous.to_string()),
+        ("may sleep", settings.sleep.to_string()),
+    ]
 }
 
 /// Names and values in two columns.

@@ -10,6 +10,10 @@ const SAME_SECS: f64 = 1e-9;
 pub struct Playback {
     /// Of each frame, seconds, ascending.
     times: Vec<f64>,
+    /// Those before it are no longer there.
+    first: usize,
+    /// Do frames come from a world that runs? Then time moves on by [`Playback::follow`].
+    live: bool,
     frame: usize,
     /// Between frames while playing.
     time_secs: f64,
@@ -22,16 +26,33 @@ pub struct Playback {
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { times: Vec::new(), frame: 0, time_secs: 0.0, playing: false, speed: 1.0, looping: false }
+        Self {
+            times: Vec::new(),
+            first: 0,
+            live: false,
+            frame: 0,
+            time_secs: 0.0,
+            playing: false,
+            speed: 1.0,
+            looping: false,
+        }
     }
 }
 
 impl Playback {
     /// Gives it another run's frame times, seconds, ascending; speed and looping stay.
     pub fn set_times(&mut self, times: Vec<f64>) {
-        self.times = times;
-        self.playing = false;
+        (self.times, self.first, self.live, self.playing) = (times, 0, false, false);
         self.go_to(0);
+    }
+
+    /// Frames come from a world that runs: there are those from `first` on, the last of them at `time_of` it. Shows the
+    /// last.
+    pub fn follow(&mut self, frames: std::ops::Range<usize>, time_of: impl Fn(usize) -> f64) {
+        (self.live, self.first) = (true, frames.start);
+        let known = self.times.len();
+        self.times.extend((known..frames.end).map(time_of));
+        self.go_to(self.last());
     }
 
     /// The frame to show.
@@ -41,6 +62,14 @@ impl Playback {
     /// Frames there are.
     pub fn frames(&self) -> usize {
         self.times.len()
+    }
+    /// The first frame that is still there.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+    /// Is the newest frame shown of a world that runs?
+    pub fn at_present(&self) -> bool {
+        self.live && self.frame == self.last()
     }
     /// The last frame; 0 where there is none.
     pub fn last(&self) -> usize {
@@ -61,7 +90,7 @@ impl Playback {
 
     /// Shows a frame, or the last if there are fewer.
     pub fn go_to(&mut self, frame: usize) {
-        self.frame = frame.min(self.last());
+        self.frame = frame.clamp(self.first.min(self.last()), self.last());
         self.time_secs = self.time_secs();
     }
 
@@ -86,10 +115,12 @@ impl Playback {
         }
     }
 
-    /// Plays or pauses; at the end it plays from the beginning.
+    /// Plays or pauses; at the end a recording plays from the beginning, and a world that runs goes on at its end.
     pub fn toggle(&mut self) {
-        self.playing = !self.playing && self.frames() > 1;
-        if self.playing && self.frame == self.last() {
+        self.playing = !self.playing && (self.live || self.frames() > 1);
+        if self.playing && self.live {
+            self.go_to(self.last());
+        } else if self.playing && self.frame == self.last() {
             self.go_to(0);
         }
     }
@@ -99,9 +130,9 @@ impl Playback {
         self.playing = false;
     }
 
-    /// Lets `elapsed_secs` of real time pass.
+    /// Lets `elapsed_secs` of real time pass over a recording.
     pub fn advance(&mut self, elapsed_secs: f64) {
-        if !self.playing {
+        if !self.playing || self.live {
             return;
         }
         self.time_secs += elapsed_secs.max(0.0) * self.speed;

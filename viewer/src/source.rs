@@ -1,10 +1,13 @@
-//! Where frames come from: a recording, and one day a running world.
+//! Where frames come from: a recording, or a running world ([`Live`]).
 
 use std::path::Path;
 use std::sync::Arc;
 
 use lamina2d::record::{FrameData, RecordError, Recording, RunInfo, StepRow};
+use lamina2d::scene::Scene;
 use lamina2d::world::BodyTable;
+
+use crate::live::Live;
 
 /// Why a source has nothing to show.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +18,9 @@ pub enum SourceError {
     /// A run that was ended before its first frame was on disk.
     #[error("{0}: no frame of it can be read")]
     NoFrames(String),
+    /// A running world keeps its last frames only.
+    #[error("frame {0} is no longer kept")]
+    NotKept(usize),
 }
 
 /// Frames in the order of their steps, and the numbers of every step.
@@ -23,11 +29,17 @@ pub trait Source: std::fmt::Debug {
     fn name(&self) -> &str;
     /// What is run, with what.
     fn info(&self) -> &RunInfo;
+    /// What it began with.
+    fn scene(&self) -> &Scene;
     /// What else is worth telling: names and values.
     fn facts(&self) -> Vec<(&'static str, String)>;
     /// How far the source is good, if not all of it is.
     fn loss(&self) -> Option<String>;
-    /// Frames there are now.
+    /// The first frame there still is.
+    fn first(&self) -> usize {
+        0
+    }
+    /// Frames there are now, those no longer kept included.
     fn frames(&self) -> usize;
     /// The step of a frame.
     fn step_of(&self, frame: usize) -> Option<u64>;
@@ -47,6 +59,10 @@ pub trait Source: std::fmt::Debug {
     fn bodies(&mut self, step: u64) -> Result<Arc<BodyTable>, SourceError>;
     /// The recording behind it, if there is one: the library compares those.
     fn recording(&mut self) -> Option<&mut Recording> {
+        None
+    }
+    /// The running world behind it, if there is one.
+    fn live(&mut self) -> Option<&mut Live> {
         None
     }
 
@@ -94,6 +110,9 @@ impl Source for Replay {
     fn info(&self) -> &RunInfo {
         self.recording.info()
     }
+    fn scene(&self) -> &Scene {
+        self.recording.scene()
+    }
     fn facts(&self) -> Vec<(&'static str, String)> {
         let (recording, scene) = (&self.recording, self.recording.scene());
         let joints = if scene.joints.is_empty() { "none".to_owned() } else { scene.joints.len().to_string() };
@@ -105,6 +124,7 @@ impl Source for Replay {
             ("scene is", scene.about.clone()),
             ("bodies", scene.bodies.len().to_string()),
             ("joints", joints),
+            ("things done", recording.events().len().to_string()),
         ]
     }
     fn loss(&self) -> Option<String> {

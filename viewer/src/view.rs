@@ -89,6 +89,8 @@ pub struct View {
     pub impulses: bool,
     /// Length of an impulse: metres per N·s, times that of [`View::impulse_scale`] 1.
     pub impulse_scale: f32,
+    /// Joints.
+    pub joints: bool,
     /// Bounding circles.
     pub circles: bool,
     /// Velocities, a tenth of a second long.
@@ -117,6 +119,7 @@ impl Default for View {
             depths: false,
             impulses: false,
             impulse_scale: 1.0,
+            joints: true,
             circles: false,
             velocities: false,
             trails: TrailsOf::None,

@@ -32,6 +32,8 @@ pub struct Palette {
     pub depths: [Color32; 2],
     /// Impulses.
     pub impulse: Color32,
+    /// Joints.
+    pub joint: Color32,
     /// Bounding circles.
     pub circle: Color32,
     /// Velocities.
@@ -64,6 +66,7 @@ impl Palette {
         normal: rgb(0x7f_e0_ff),
         depths: [rgb(0xff_b0_e0), rgb(0xb6_ff_8a)],
         impulse: rgb(0xff_c2_4a),
+        joint: rgb(0xd8_a8_ff),
         circle: rgb(0x70_7c_8c),
         velocity: rgb(0xe8_ec_f2),
         rim: 1.35,
@@ -82,6 +85,7 @@ impl Palette {
         normal: rgb(0x00_60_a0),
         depths: [rgb(0xa0_00_80), rgb(0x30_70_00)],
         impulse: rgb(0xb0_60_00),
+        joint: rgb(0x70_20_b0),
         circle: rgb(0x9a_a2_ad),
         velocity: rgb(0x20_24_2a),
         rim: 0.62,

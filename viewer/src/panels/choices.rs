@@ -45,6 +45,7 @@ fn overlays(ui: &mut Ui, viewer: &mut Viewer) {
             ui.add(Slider::new(&mut view.impulse_scale, 0.1..=10.0).logarithmic(true).show_value(false));
         name(&scale.on_hover_text("length of impulses"), Role::Slider, "Length of impulses");
     }
+    ui.checkbox(&mut view.joints, "joint lines");
     ui.checkbox(&mut view.circles, "bounding circles");
     ui.checkbox(&mut view.velocities, "velocities");
     ui.add_space(6.0);

@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 use lamina2d::record::Apart;
 
-use super::{facts, number};
+use super::{facts, number, settings_named};
 use crate::app::Viewer;
 
 /// Draws it.
@@ -44,18 +44,11 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     facts(ui, "difference", rows);
     ui.separator();
     ui.strong("Settings that differ");
-    let settings = |at: usize| format!("{:#?}", viewer.panes[at].source.info().settings);
-    let (mine, theirs) = (settings(0), settings(1));
-    let differ: Vec<_> = mine.lines().zip(theirs.lines()).filter(|(a, b)| a != b).collect();
+    let [mine, theirs] = [0, 1].map(|at: usize| settings_named(&viewer.panes[at].source.info().settings));
+    let both = mine.into_iter().zip(theirs).filter(|(a, b)| a != b);
+    let differ: Vec<_> = both.map(|((name, a), (_, b))| (name, format!("{a}, second {b}"))).collect();
     if differ.is_empty() {
         ui.weak("none");
     }
-    for (a, b) in differ {
-        ui.label(format!("{} / {}", a.trim().trim_end_matches(','), value(b)));
-    }
-}
-
-/// What stands behind the name on a line.
-fn value(line: &str) -> &str {
-    line.split_once(": ").map_or(line, |(_, value)| value).trim().trim_end_matches(',')
+    facts(ui, "settings apart", differ);
 }

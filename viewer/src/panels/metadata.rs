@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 use lamina2d::record::STATISTICS;
 
-use super::{facts, number};
+use super::{facts, number, settings_named};
 use crate::app::Viewer;
 
 /// Draws it.
@@ -15,23 +15,13 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
         let (source, name) = (&pane.source, pane.source.name());
         ui.heading(name);
         let info = source.info();
-        let settings = &info.settings;
         let whole = source.loss().map_or_else(|| "whole".to_owned(), |loss| format!("not whole, {loss}"));
         let mut rows = vec![
             ("scene", info.scene.clone()),
             ("seed", info.seed.to_string()),
-            ("integrator", settings.integrator.to_string()),
-            ("solver", settings.solver.to_string()),
-            ("substeps", settings.substeps.to_string()),
-            ("step", format!("{} s", number(settings.dt_secs))),
             ("frame every", format!("{} steps", info.every)),
-            ("broad phase", settings.broad.to_string()),
-            ("precision", settings.precision.to_string()),
-            ("lanes", settings.lanes.to_string()),
-            ("skips", settings.skips.to_string()),
-            ("continuous", settings.continuous.to_string()),
-            ("may sleep", settings.sleep.to_string()),
         ];
+        rows.extend(settings_named(&info.settings));
         rows.extend(source.facts());
         rows.push(("the file is", whole));
         rows.push(("crate", format!("lamina2d {} at {}", info.crate_version, info.commit)));

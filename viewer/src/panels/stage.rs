@@ -1,10 +1,11 @@
 //! The middle of the window: one canvas, or two side by side, and what the pointer does there.
 
-use eframe::egui::{Rect, Response, Role, Sense, Ui, vec2};
+use eframe::egui::{Rect, Response, Role, Sense, Stroke, Ui, vec2};
 
 use super::name;
 use crate::app::{Tab, Viewer};
 use crate::canvas::{self, Palette, Scenery};
+use crate::live::Tool;
 use crate::view::Arrangement;
 
 /// Draws it.
@@ -12,7 +13,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     let rect = ui.available_rect_before_wrap();
     let palette = Palette::of(viewer.view.dark);
     if viewer.panes.is_empty() {
-        let text = "Open a recording: type its path above, or drop the file here.";
+        let text = "Open a recording: type its path above, or drop the file here.\n\nlamina-viewer --live SCENE runs a scene.";
         canvas::notice(&ui.painter_at(rect), rect, &palette, text);
         return;
     }
@@ -40,7 +41,12 @@ fn halves(rect: Rect) -> Vec<Rect> {
 
 /// Drags, clicks, wheels and pinches.
 fn point(ui: &Ui, viewer: &mut Viewer, at: usize, rect: Rect, response: &Response) {
-    if response.dragged() {
+    let live = at == 0 && viewer.live().is_some();
+    if live {
+        pull(viewer, rect, response);
+    }
+    let pulling = viewer.live().is_some_and(|live| live.session().pull().is_some());
+    if response.dragged() && !pulling {
         let by = response.drag_delta();
         viewer.camera.pan([by.x, -by.y]);
         viewer.view.follow &= by == vec2(0.0, 0.0);
@@ -57,14 +63,48 @@ fn point(ui: &Ui, viewer: &mut Viewer, at: usize, rect: Rect, response: &Respons
         && let Some(pointer) = response.interact_pointer_pos()
     {
         let world = viewer.camera.world(rect, pointer);
+        if live && viewer.tool != Tool::Hand {
+            let tool = viewer.tool;
+            if let Some(slot) = viewer.act(|live| live.spawn(tool, world)).flatten() {
+                viewer.selected = Some(slot as usize);
+            }
+            return;
+        }
         viewer.selected = viewer.panes[at].body_at(world);
-        if viewer.selected.is_some() {
+        if viewer.selected.is_some() && !live {
             viewer.tab = Tab::Body;
         }
     }
 }
 
-fn draw(ui: &Ui, viewer: &Viewer, at: usize, rect: Rect) {
+/// Takes a dynamic body of a running world by the hand, moves it, lets it go.
+fn pull(viewer: &mut Viewer, rect: Rect, response: &Response) {
+    let Some(pointer) = response.interact_pointer_pos() else { return };
+    let world = viewer.camera.world(rect, pointer);
+    if response.drag_started() && viewer.tool == Tool::Hand {
+        // Where the button went down, not where the pointer is by now.
+        let began = response.ctx.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
+        let began = viewer.camera.world(rect, began);
+        if let Some(slot) = viewer.panes[0].body_at(began)
+            && viewer.live().is_some_and(|live| live.grab(slot, began))
+        {
+            viewer.selected = Some(slot);
+            viewer.follow_live();
+        }
+    }
+    let Some(live) = viewer.live() else { return };
+    if response.dragged() {
+        live.drag(world);
+    }
+    if response.drag_stopped() && live.session().pull().is_some() {
+        live.let_go();
+        viewer.follow_live();
+    }
+}
+
+fn draw(ui: &Ui, viewer: &mut Viewer, at: usize, rect: Rect) {
+    let line = viewer.live().filter(|_| at == 0).and_then(|live| live.pull_line());
+    let viewer = &*viewer;
     let pane = &viewer.panes[at];
     let overlaid = viewer.view.arrangement == Arrangement::Overlaid;
     let twin = if overlaid { viewer.panes.get(1) } else { None };
@@ -77,6 +117,11 @@ fn draw(ui: &Ui, viewer: &Viewer, at: usize, rect: Rect) {
     };
     let painter = ui.painter_at(rect);
     canvas::paint(&painter, &scenery, pane, twin);
+    if let Some(ends) = line {
+        let ends = ends.map(|end| viewer.camera.screen(rect, end));
+        painter.line_segment(ends, Stroke::new(2.0, scenery.palette.selected));
+        painter.circle_filled(ends[1], 4.0, scenery.palette.selected);
+    }
     let frame = pane.frame();
     let over = twin.map(|twin| format!(", and {} over it", twin.source.name())).unwrap_or_default();
     let text = format!("{}{over}: step {}, {:.3} s", pane.source.name(), frame.step, frame.time_secs);

@@ -107,16 +107,17 @@ fn scrub(ui: &mut Ui, viewer: &mut Viewer) {
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click_and_drag());
     let playback = &mut viewer.playback;
-    let last = playback.last().max(1) as f32;
+    let first = playback.first();
+    let span = (playback.last() - first.min(playback.last())).max(1) as f32;
     let track = Rect::from_center_size(rect.center(), vec2((rect.width() - 12.0).max(1.0), 6.0));
     if let Some(at) = response.interact_pointer_pos() {
         let share = ((at.x - track.left()) / track.width()).clamp(0.0, 1.0);
         playback.pause();
-        playback.go_to((share * last).round() as usize);
+        playback.go_to(first + (share * span).round() as usize);
     }
     let frame = playback.frame();
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), frame as f64, "Timeline"));
-    let x = |frame: usize| track.left() + track.width() * frame as f32 / last;
+    let x = |frame: usize| track.left() + track.width() * frame.saturating_sub(first) as f32 / span;
     let palette = Palette::of(viewer.view.dark);
     let painter = ui.painter();
     painter.rect_filled(track, 3.0, ui.visuals().extreme_bg_color);

@@ -172,12 +172,13 @@ fn speeds_are_chosen() {
 #[test]
 fn what_is_shown_is_chosen() {
     type Shown = fn(&View) -> bool;
-    let boxes: [(&str, Shown); 7] = [
+    let boxes: [(&str, Shown); 8] = [
         ("grid", |view| view.grid),
         ("contact points", |view| view.contacts),
         ("normals", |view| view.normals),
         ("contact start and end", |view| view.depths),
         ("impulses", |view| view.impulses),
+        ("joint lines", |view| view.joints),
         ("bounding circles", |view| view.circles),
         ("velocities", |view| view.velocities),
     ];
