@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use lamina2d::gate;
 use lamina2d::report::peers::{self, Peers};
-use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare, instructions};
+use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare, instructions, strip};
 
 use super::{output, refuse};
 
@@ -59,7 +59,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
             .map_err(refuse)?;
     }
     let (peers, instructions) = beside(args).map_err(refuse)?;
-    let data = Data { peers, instructions, ..measure(args.quick, EXPERIMENTS)? };
+    let data = Data { peers, instructions, strips: strip::strips()?, ..measure(args.quick, EXPERIMENTS)? };
     for folder in &folders {
         report::write(&data, folder)
             .with_context(|| format!("cannot write the report into {}", folder.display()))?;

@@ -8,6 +8,7 @@ use super::experiments::{
 };
 use super::headline::{Headline, headlines};
 use super::peers::{self, Peers};
+use super::strip::Strip;
 use super::table::{Record, Table};
 use super::{Machine, instructions};
 
@@ -46,6 +47,9 @@ pub struct Data {
     /// What `lamina gate` holds, in a file of its own.
     #[serde(skip)]
     pub instructions: Vec<instructions::Row>,
+    /// What the scenes look like, in files of their own.
+    #[serde(skip)]
+    pub strips: Vec<Strip>,
 }
 
 /// One experiment: fills its rows of a report.
@@ -160,6 +164,7 @@ impl Data {
             limits: Vec::new(),
             peers: None,
             instructions: Vec::new(),
+            strips: Vec::new(),
         }
     }
 

@@ -10,6 +10,7 @@
 //! | `machine` | where it was measured, and with which build |
 //! | `table` | rows as tables and CSV |
 //! | `plots` | SVG from rows |
+//! | [`strip`] | SVG of scenes at a few moments |
 //! | `page` | HTML and Markdown from tables and plots |
 //! | [`compare`] | two reports side by side |
 
@@ -22,6 +23,7 @@ mod machine;
 mod page;
 pub mod peers;
 mod plots;
+pub mod strip;
 mod table;
 mod timing;
 

@@ -37,6 +37,23 @@ const GROUPS: &[Group] = &[
         tables: &["peers", "peer_rows"],
     },
     Group {
+        title: "Scenes",
+        intro: "What is timed above, at a few moments of a run with default settings: every body, drawn from the \
+                engine's own state. Any of it can be recorded and looked at frame by frame.",
+        plots: &[
+            "strip_circles.svg",
+            "strip_circles_polygons.svg",
+            "strip_polygons.svg",
+            "strip_all.svg",
+            "strip_pyramid.svg",
+            "strip_tumbler.svg",
+            "strip_spinner.svg",
+            "strip_rain.svg",
+            "strip_joint_grid.svg",
+        ],
+        tables: &[],
+    },
+    Group {
         title: "The thesis's experiments",
         intro: "Performance by mix and integrator, complexity, broad phase on and off, determinism.",
         plots: &["mix_by_integrator.svg", "broad_on_off.svg"],

@@ -1,4 +1,4 @@
-//! SVG plots of a report's rows.
+//! SVG plots of a report's rows, and its strips of frames.
 
 mod chart;
 
@@ -6,6 +6,7 @@ use chart::{Series, Slope, bars, heat_map, log_log, stacked};
 
 use super::experiments::{broad_phase, contacts, matrix, stability};
 use super::peers::{self, Peers};
+use super::strip::Strip;
 use super::{Data, fitted_exponent};
 use crate::measure::Stage;
 use crate::settings::Solver;
@@ -19,8 +20,21 @@ pub(super) struct Plot {
     pub(super) about: String,
     /// The command that makes its rows.
     pub(super) command: &'static str,
+    /// The commands that record what it shows, and open the recording.
+    pub(super) replay: Option<[String; 2]>,
     /// The drawing.
     pub(super) svg: String,
+}
+
+impl Plot {
+    /// How it came about, in a sentence or two; backticks mark commands.
+    pub(super) fn how(&self) -> String {
+        let made = format!("Made by `{}`.", self.command);
+        match &self.replay {
+            Some([record, open]) => format!("{made} Record the run: `{record}`; open it: `{open}`."),
+            None => made,
+        }
+    }
 }
 
 /// All plots of a report that have something to show.
@@ -39,7 +53,18 @@ pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
         (!data.contacts.is_empty(), stages),
         (!data.lanes.is_empty(), lanes_speed_up),
     ];
-    all.into_iter().filter(|(has_rows, _)| *has_rows).map(|(_, draw)| draw(data)).collect()
+    let drawn = all.into_iter().filter(|(has_rows, _)| *has_rows).map(|(_, draw)| draw(data));
+    drawn.chain(data.strips.iter().map(|strip| Ok(frames(strip)))).collect()
+}
+
+fn frames(strip: &Strip) -> Plot {
+    Plot {
+        file: strip.file,
+        about: strip.about.clone(),
+        command: "lamina report",
+        replay: Some(strip.replay.clone()),
+        svg: strip.svg.clone(),
+    }
 }
 
 fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
@@ -63,6 +88,7 @@ fn time_against_bodies(data: &Data) -> anyhow::Result<Plot> {
         about: "Median time per step against the number of polygons, both logarithmic, with fitted exponents"
             .to_owned(),
         command: "lamina report --only matrix",
+        replay: None,
         svg: log_log("Polygons, settled: time per step", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
@@ -85,6 +111,7 @@ fn time_against_overlap(data: &Data) -> anyhow::Result<Plot> {
             "Largest overlap of a stack of ten boxes against the median time per step, by solver and substeps"
                 .to_owned(),
         command: "lamina report --only stability",
+        replay: None,
         svg: log_log(
             "Ten boxes at rest: error against run time",
             ["ms per step", "largest overlap mm"],
@@ -110,6 +137,7 @@ fn broad_on_off(data: &Data) -> anyhow::Result<Plot> {
         file: "broad_on_off.svg",
         about: "Median time per step with the broad phase on and off, 60 to 200 polygons".to_owned(),
         command: "lamina report --only broad_phase",
+        replay: None,
         svg: log_log("Polygons: broad phase on and off", ["bodies", "ms per step"], &series, Slope::Up)?,
     })
 }
@@ -132,6 +160,7 @@ fn lanes_speed_up(data: &Data) -> anyhow::Result<Plot> {
         file: "lanes.svg",
         about: "How many times faster than one lane each kernel runs at 4, 8 and 16 lanes".to_owned(),
         command: "lamina report --only lanes",
+        replay: None,
         svg: bars("Kernels: speed-up over one lane", "times faster", &kernels, &series)?,
     })
 }
@@ -155,6 +184,7 @@ fn times_faster(data: &Data) -> anyhow::Result<Plot> {
         file: "times_faster.svg",
         about: format!("How many times faster than the thesis engine each mix of {smallest} bodies runs"),
         command: "lamina report --only matrix",
+        replay: None,
         svg: bars(&format!("{smallest} bodies, settled: times faster"), "times faster", &labels, &series)?,
     })
 }
@@ -185,6 +215,7 @@ fn mix_by_integrator(data: &Data) -> anyhow::Result<Plot> {
         file: "mix_by_integrator.svg",
         about: format!("Median µs per step of {smallest} bodies, by shape mix and integrator, 8 lanes"),
         command: "lamina report --only matrix",
+        replay: None,
         svg: heat_map(&format!("{smallest} bodies, settled: µs per step"), &mixes, &integrators, &values)?,
     })
 }
@@ -203,6 +234,7 @@ fn stages(data: &Data) -> anyhow::Result<Plot> {
         file: "stages.svg",
         about: "Median µs per step of 1000 settled bodies, by stage, default settings, 8 lanes".to_owned(),
         command: "lamina report --only contacts",
+        replay: None,
         svg: stacked(
             "1000 bodies, settled: where a step goes",
             "µs per step",
@@ -245,6 +277,7 @@ fn peers_times_faster(data: &Data) -> anyhow::Result<Plot> {
                 sleeping off"
                 .to_owned(),
         command: "cargo run --release -p lamina-peers",
+        replay: None,
         svg: bars("4 substeps, one thread: times faster", "times faster", &labels, &series)?,
     })
 }
@@ -291,6 +324,7 @@ fn peers_sweep(data: &Data, sweep: &Sweep) -> anyhow::Result<Plot> {
             sweep.scene, sweep.error
         ),
         command: "cargo run --release -p lamina-peers",
+        replay: None,
         svg: log_log(sweep.title, ["ms per step", sweep.error], &series, Slope::Down)?,
     })
 }

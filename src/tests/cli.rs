@@ -10,6 +10,7 @@ use std::process::{Command, Stdio};
 use assert_cmd::cargo::cargo_bin;
 use common_cli::{Answer, folder, lamina, run_file};
 use lamina2d::measure::Stage;
+use lamina2d::report::strip::SHOTS;
 use lamina2d::scene::SCENES;
 use lamina2d::settings::Skip;
 use serde_json::Value;
@@ -321,6 +322,10 @@ fn the_long_commands_print_one_json_document_and_the_report_leaves_its_files() {
         "stages.svg",
     ] {
         assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
+    }
+    for shot in SHOTS {
+        let bytes = out.join(shot.file).metadata().unwrap().len();
+        assert!((1..64 << 10).contains(&bytes), "{}: {bytes} bytes", shot.file);
     }
     let left = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name());
     assert!(left.filter(|name| name.to_string_lossy().ends_with(".part")).count() == 0);

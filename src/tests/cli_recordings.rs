@@ -4,6 +4,7 @@
 
 #[expect(dead_code, reason = "shared with tests that need more of it")]
 mod common_cli;
+mod common_recording;
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -11,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use common_cli::{Answer, folder, lamina};
+use common_recording::{replace, rewrite};
 use serde_json::Value;
 
 /// Records a scene into `path`.
@@ -69,35 +71,17 @@ fn a_recording_of_another_run_is_not_verified() {
     let answer = lamina(&["verify", path.to_str().unwrap()]);
     assert_eq!(answer.code, Some(0), "{answer:#?}");
     let bytes = std::fs::read(&path).unwrap();
-    std::fs::write(&path, rewrite_scene(&bytes, "[0.1,0.0]", "[0.3,0.0]")).unwrap();
+    let changed = rewrite(&bytes, mcap::WriteOptions::new().compression(None), |topic, data| {
+        if topic == "/scene" {
+            replace(data, "[0.1,0.0]", "[0.3,0.0]");
+        }
+        true
+    });
+    std::fs::write(&path, changed.unwrap()).unwrap();
     let answer = lamina(&["verify", path.to_str().unwrap()]);
     assert_eq!(answer.code, Some(1), "{answer:#?}");
     assert!(answer.out.contains("differs from step 0 on: body 0, x: recorded 0.1"), "{answer:#?}");
     assert!(answer.err.contains("not the one recorded"), "{answer:#?}");
-}
-
-/// The recording with other text in its scene, every checksum whole.
-fn rewrite_scene(bytes: &[u8], what: &str, by: &str) -> Vec<u8> {
-    let summary = mcap::Summary::read(bytes).unwrap().unwrap();
-    let mut chunks = summary.chunk_indexes.clone();
-    chunks.sort_by_key(|chunk| chunk.chunk_start_offset);
-    let mut out = std::io::Cursor::new(Vec::new());
-    let mut writer = mcap::WriteOptions::new().compression(None).chunk_size(None).create(&mut out).unwrap();
-    for chunk in &chunks {
-        for message in summary.stream_chunk(bytes, chunk).unwrap() {
-            let mut message = message.unwrap();
-            if message.channel.topic == "/scene" {
-                let text = String::from_utf8(message.data.to_vec()).unwrap();
-                assert!(text.contains(what), "{text}");
-                message.data = text.replace(what, by).into_bytes().into();
-            }
-            writer.write(&message).unwrap();
-        }
-        writer.flush().unwrap();
-    }
-    writer.finish().unwrap();
-    drop(writer);
-    out.into_inner()
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! Recordings that no recorder wrote: each has whole checksums and one thing that cannot be.
 
-use std::collections::BTreeMap;
-use std::io::Cursor;
+mod common_recording;
+
 use std::path::{Path, PathBuf};
 
+use common_recording::{replace, rewrite};
 use lamina2d::record::{Recorder, Recording};
 use lamina2d::scene;
 use lamina2d::settings::Settings;
 use lamina2d::simulation::simulate;
-use mcap::records::MessageHeader;
-use mcap::{Compression, Summary, WriteOptions};
+use mcap::{Compression, WriteOptions};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
@@ -27,42 +27,6 @@ fn good() -> Result<(tempfile::TempDir, PathBuf, Vec<u8>), Box<dyn std::error::E
     recorder.finish()?;
     let bytes = std::fs::read(&path)?;
     Ok((folder, path, bytes))
-}
-
-/// Writes a recording once more, chunk by chunk, with other messages. `edit` is given topic and data, and leaves a
-/// message out where it says false.
-fn rewrite(
-    bytes: &[u8],
-    options: WriteOptions,
-    mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
-) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
-    let summary = Summary::read(bytes)?.ok_or("a whole recording has a summary")?;
-    let mut chunks = summary.chunk_indexes.clone();
-    chunks.sort_by_key(|chunk| chunk.chunk_start_offset);
-    let mut out = Cursor::new(Vec::new());
-    {
-        let mut writer = options.chunk_size(None).create(&mut out)?;
-        for chunk in &chunks {
-            for message in summary.stream_chunk(bytes, chunk)? {
-                let message = message?;
-                let (topic, mut data) = (message.channel.topic.clone(), message.data.to_vec());
-                if edit(&topic, &mut data) {
-                    let encoding = &message.channel.message_encoding;
-                    let channel_id = writer.add_channel(0, &topic, encoding, &BTreeMap::new())?;
-                    let header = MessageHeader {
-                        channel_id,
-                        sequence: message.sequence,
-                        log_time: message.log_time,
-                        publish_time: message.publish_time,
-                    };
-                    writer.write_to_known_channel(&header, &data)?;
-                }
-            }
-            writer.flush()?;
-        }
-        writer.finish()?;
-    }
-    Ok(out.into_inner())
 }
 
 fn packed() -> WriteOptions {
@@ -89,12 +53,6 @@ type Edit = fn(&mut Vec<u8>);
 
 fn put_u32(data: &mut [u8], at: usize, value: u32) {
     data[at..at + 4].copy_from_slice(&value.to_le_bytes());
-}
-
-fn replace(data: &mut Vec<u8>, what: &str, by: &str) {
-    let text = String::from_utf8(std::mem::take(data)).expect("JSON");
-    assert!(text.contains(what), "{what} is not in {text}");
-    *data = text.replacen(what, by, 1).into_bytes();
 }
 
 #[test]

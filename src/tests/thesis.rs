@@ -1,7 +1,9 @@
 //! Acceptance of the thesis baseline: its published figures, and each of its known defects.
 
+mod common_motion;
 mod common_thesis;
 
+use common_motion::scene_of;
 use common_thesis::{MIXES, continued, mix, run, world_with};
 use lamina2d::force::Forces;
 use lamina2d::scene::mixes::PX_PER_M;
@@ -22,19 +24,6 @@ fn hexagon(radius_px: f64, first: u32) -> BodySpec {
         [radius_px / PX_PER_M * angle.cos(), radius_px / PX_PER_M * angle.sin()]
     };
     BodySpec::new(ShapeSpec::Polygon((0..6).map(corner).collect()), [0.0; 2]).mass(1.0)
-}
-
-fn scene_of(bodies: Vec<BodySpec>, forces: Forces) -> Scene {
-    Scene {
-        name: "test".into(),
-        about: String::new(),
-        bodies,
-        joints: Vec::new(),
-        forces,
-        dt_secs: 1.0 / 60.0,
-        steps: 1,
-        seed: 0,
-    }
 }
 
 fn world(scene: &Scene, version: Version) -> ThesisWorld {

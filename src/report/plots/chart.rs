@@ -53,6 +53,13 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     low * 0.7..high * 1.4
 }
 
+/// A chart with its title and room for names: 44 pixels below it, `left` beside it.
+fn titled<'a, 'b>(area: &'a Area<'b>, title: &str, left: u32) -> ChartBuilder<'a, 'static, SVGBackend<'b>> {
+    let mut chart = ChartBuilder::on(area);
+    chart.caption(title, ("sans-serif", 20)).margin(12).x_label_area_size(44).y_label_area_size(left);
+    chart
+}
+
 /// Where lines leave room for their names: they rise or fall.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Slope {
@@ -70,14 +77,8 @@ pub(super) fn log_log(
     let xs = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.0)));
     let ys = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
     to_svg(|area| {
-        let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(70)
-                .build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale()),
-        )?;
+        let mut chart =
+            plot(titled(area, title, 70).build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale()))?;
         plot(
             chart
                 .configure_mesh()
@@ -134,14 +135,7 @@ fn bar_chart<'a, 'b>(
     top: f64,
 ) -> anyhow::Result<ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>> {
     let groups = labels.len();
-    let mut chart = plot(
-        ChartBuilder::on(area)
-            .caption(title, ("sans-serif", 20))
-            .margin(12)
-            .x_label_area_size(44)
-            .y_label_area_size(60)
-            .build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top),
-    )?;
+    let mut chart = plot(titled(area, title, 60).build_cartesian_2d(-0.5..groups as f64 - 0.5, 0.0..top))?;
     let label = label_of(labels);
     let mesh = &mut chart.configure_mesh();
     plot(
@@ -227,11 +221,7 @@ pub(super) fn heat_map(
     let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     to_svg(|area| {
         let mut chart = plot(
-            ChartBuilder::on(area)
-                .caption(title, ("sans-serif", 20))
-                .margin(12)
-                .x_label_area_size(44)
-                .y_label_area_size(150)
+            titled(area, title, 150)
                 .build_cartesian_2d(-0.5..columns.len() as f64 - 0.5, -0.5..rows.len() as f64 - 0.5),
         )?;
         let (column, row) = (label_of(columns), label_of(rows));
