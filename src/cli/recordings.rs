@@ -69,6 +69,7 @@ pub(crate) fn info(args: &InfoArgs) -> anyhow::Result<()> {
         "bodies": bodies,
         "steps": recording.rows().len(),
         "frames": recording.frames(),
+        "events": recording.events().len(),
         "seconds": last.map(|row| row.values[0]),
         "hash": last.map(|row| format!("{:016x}", row.hash)),
         "bytes": recording.bytes(),

@@ -45,7 +45,13 @@
 //! ```
 //!
 //! # What it costs
-//! Bytes per frame before packing: 29 per body and 56 per contact in f32, 57 and 100 in f64; 184 per step.
+//! Bytes per frame before packing: 29 per body and 56 per contact in f32, 57 and 100 in f64; 184 per step. Packed, of the
+//! mix `all` in f32: 119 per body and frame once it has settled, 84 while it falls; 1.5 in free flight.
+//!
+//! The step's own thread copies columns and contacts (20 to 30 µs at 1000 bodies); another one hashes, sums up, packs and
+//! writes about 550 MB/s. Where steps are so short that they make more than that (1.1 GB/s: 1000 settled bodies, 0.11 ms a
+//! step), they wait for it, and recording each of them takes longer than the step: `--every` 4 then keeps up. Tried and
+//! lost: LZ4 at −32 and −64 (a tenth to a third faster, hardly packs).
 
 mod compare;
 mod container;

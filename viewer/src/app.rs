@@ -71,6 +71,8 @@ pub struct Viewer {
     pub tool: Tool,
     /// Pictures per second, of late.
     pub fps: f64,
+    /// The camera as it was fitted last, and the size of the canvas then, points.
+    pub fitted: Option<(Camera, [f32; 2])>,
     /// The scale egui was told last.
     scaled: Option<f32>,
 }

@@ -19,9 +19,13 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     }
     let beside = viewer.panes.len() > 1 && viewer.view.arrangement == Arrangement::SideBySide;
     let rects = if beside { halves(rect) } else { vec![rect] };
-    if viewer.fit {
+    // A view that was fitted and has not been moved since stays fitted while panels and window find their sizes.
+    let size: [f32; 2] = rects[0].size().into();
+    let outgrown = viewer.fitted.is_some_and(|(camera, fitted)| camera == viewer.camera && fitted != size);
+    if viewer.fit || outgrown {
         if let Some(bounds) = canvas::bounds(&viewer.panes) {
-            viewer.camera.fit(bounds, rects[0].size().into());
+            viewer.camera.fit(bounds, size);
+            viewer.fitted = Some((viewer.camera, size));
         }
         viewer.fit = false;
     }
