@@ -26,17 +26,6 @@ pub(super) struct Plot {
     pub(super) svg: String,
 }
 
-impl Plot {
-    /// How it came about, in a sentence or two; backticks mark commands.
-    pub(super) fn how(&self) -> String {
-        let made = format!("Made by `{}`.", self.command);
-        match &self.replay {
-            Some([record, open]) => format!("{made} Record the run: `{record}`; open it: `{open}`."),
-            None => made,
-        }
-    }
-}
-
 /// All plots of a report that have something to show.
 pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
     type Draw = fn(&Data) -> anyhow::Result<Plot>;

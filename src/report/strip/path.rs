@@ -8,7 +8,7 @@ use crate::simulation::BodyState;
 use crate::world::BodyEntry;
 
 /// The thinnest moving body is so many units thick: enough to show how it lies.
-pub(super) const UNITS_PER_BODY: i64 = 10;
+pub(super) const UNITS_PER_BODY: i64 = 8;
 
 /// What a colour says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
