@@ -98,6 +98,9 @@ pub struct Skipped {
     pub manifolds: u64,
 }
 
+/// The widest lanes of a scalar: see [`Plan::couples`].
+type Widest<L> = <<L as Lanes>::Elem as Real>::Widest;
+
 /// How smooth motion is to be advanced.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a, R> {
@@ -107,6 +110,8 @@ pub struct Plan<'a, R> {
     pub fields: &'a [Field<R>],
     /// Seconds per substep.
     pub h_secs: f64,
+    /// From the step's beginning to this substep's, seconds.
+    pub since_secs: f64,
     /// Substeps per step.
     pub substeps: u32,
     /// Work that may be left out.
@@ -129,6 +134,12 @@ impl<R: Real> Plan<'_, R> {
     pub fn collapses(&self) -> bool {
         let staged = !matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
         staged && self.skips.has(Skip::ClosedForm) && self.fields.iter().all(Field::is_constant)
+    }
+
+    /// Must the stages of all bodies be in step? They are within a block, so all bodies are then one block of the
+    /// widest lanes, whatever the width; no width changes a bit.
+    pub fn couples(&self) -> bool {
+        self.fields.iter().any(Field::couples)
     }
 }
 
@@ -156,6 +167,9 @@ pub fn fly<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     mut fast: FastBodies<'_, L::Elem>,
 ) -> Skipped {
+    if plan.couples() && L::WIDTH < <Widest<L> as Lanes>::WIDTH {
+        return fly::<Widest<L>>(plan, bodies, fast);
+    }
     let mut skipped = with_scheme!(plan, fly_with(plan, bodies, &mut fast));
     skipped.closed_form = if plan.collapses() { bodies.live() as u64 } else { 0 };
     skipped
@@ -169,6 +183,9 @@ pub fn predict<L: Lanes>(
     motion: &mut Motion<L::Elem>,
     start: Warm,
 ) -> Skipped {
+    if plan.couples() && L::WIDTH < <Widest<L> as Lanes>::WIDTH {
+        return predict::<Widest<L>>(plan, bodies, motion, start);
+    }
     with_scheme!(plan, predict_with(plan, bodies, motion, start));
     Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, ..Skipped::default() }
 }
@@ -230,9 +247,11 @@ fn fly_with<L: Lanes, S: Scheme>(
         let mut v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
         let matter = matter(bodies, at);
         let mut moved = [Vec2::zero(); BLOCK];
-        for _ in 0..plan.substeps {
+        for substep in 0..plan.substeps {
             let here = std::array::from_fn(|i| x[i] + moved[i]);
-            let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
+            let since = |c: f64| plan.since_secs + plan.h_secs * (f64::from(substep) + c);
+            let next =
+                S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
             moved = std::array::from_fn(|i| moved[i] + next.displacement[i]);
             v = next.velocity;
         }
@@ -348,7 +367,8 @@ fn predict_with<L: Lanes, S: Scheme>(
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
         let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
         let matter = Matter { inv_mass, ..matter(bodies, start) };
-        let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
+        let since = |c: f64| plan.since_secs + plan.h_secs * c;
+        let next = S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
         for i in 0..BLOCK {
             let at = start + i;

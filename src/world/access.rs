@@ -3,7 +3,7 @@
 use super::World;
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::contact::{Contact, Manifolds};
-use crate::force::Forces;
+use crate::force::{Forces, MOST_ATTRACTED};
 use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::Lanes;
 use crate::measure::{Counts, StageTimes, state_hash};
@@ -15,8 +15,12 @@ impl<L: Lanes> World<L> {
     /// Takes a body in. One that is not dynamic wakes all: it may have come where something sleeps.
     ///
     /// # Errors
-    /// Those of [`Bodies::insert`].
+    /// Those of [`Bodies::insert`]; more bodies than may attract each other where they do.
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
+        let body = self.bodies.live();
+        if self.forces.attraction.is_some() && body >= MOST_ATTRACTED {
+            return Err(BodyError::Attracted { body, most: MOST_ATTRACTED });
+        }
         let id = self.bodies.insert(spec)?;
         if spec.kind != BodyKind::Dynamic {
             self.islands.wake_all();
@@ -86,6 +90,10 @@ impl<L: Lanes> World<L> {
     /// The fields.
     pub fn forces(&self) -> &Forces {
         &self.forces
+    }
+    /// Seconds since the world began.
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
     }
     /// The settings.
     pub fn settings(&self) -> &Settings {
