@@ -19,7 +19,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `record` (feature `record`) | recordings, written and read |
-//! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
+//! | `report`, `accuracy`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; run time against error; instruction counts; the program `lamina` |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
@@ -98,6 +98,8 @@
 //! - Loops over a counted number of polygon edges: a third more instructions than unrolled to 4, 6 or 8.
 //! - `array::from_fn` inside a gather: left as a call by the compiler, 12 % of a step.
 
+#[cfg(feature = "cli")]
+pub mod accuracy;
 pub mod body;
 pub mod broad;
 pub mod clock;
