@@ -214,7 +214,9 @@ impl<L: Lanes> World<L> {
 
         let seen = self.find_contacts(traits, rounded, &mut clock);
         let mut fields = std::mem::take(&mut self.fields);
-        fields.iter_mut().for_each(|field| field.begin(begun_secs));
+        for field in &mut fields {
+            field.begin(begun_secs);
+        }
         let plan = Plan {
             integrator,
             fields: &fields,

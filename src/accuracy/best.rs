@@ -8,9 +8,9 @@ use super::sweep::{Results, Row};
 pub const LEVELS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// Rows that no other row of the case beats in both error and time, from the least time to the least error.
-pub fn pareto(rows: &[Row]) -> Vec<&Row> {
+pub fn pareto(results: &Results) -> Vec<&Row> {
     let mut sorted: Vec<(&Row, f64, f64)> =
-        rows.iter().filter_map(|row| Some((row, row.ns_total?, row.error?))).collect();
+        results.told().filter_map(|row| Some((row, row.ns_total?, row.error?))).collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
     let mut best = f64::INFINITY;
     sorted.retain(|(_, _, error)| {

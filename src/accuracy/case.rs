@@ -67,7 +67,7 @@ impl std::fmt::Display for Expect {
     }
 }
 
-/// What is measured of a state; see [`super::norm`] for each.
+/// What is measured of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Norm {
     /// Distance from the exact place over this length, metres: the largest of all movable bodies and samples.
@@ -141,13 +141,19 @@ pub struct Failing {
     pub reason: &'static str,
 }
 
+/// So many times better than the best point that is plotted must a reference be.
+const GATE: f64 = 100.0;
+
 /// Where bodies must be, at each sample, and how sure that is.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Per sample; empty for norms that need none.
     pub course: Vec<Vec<Exact>>,
-    /// How far two references are apart, in the norm's unit: round-off where the form is closed.
+    /// How sure it is, in the norm's unit: round-off where the form is closed, else four times the difference that
+    /// half the step makes; other methods were never further away.
     pub floor: f64,
+    /// What is below says nothing: a hundred times the floor, 0 where the form is closed.
+    pub gate: f64,
 }
 
 impl Case {
@@ -171,10 +177,10 @@ impl Case {
         let size = if let Norm::Place(size) = self.norm { size } else { 1.0 };
         let closed: Option<Vec<_>> = times.iter().map(|&t| cases::exact(scene, t)).collect();
         if let Some(course) = closed {
-            return Reference { course, floor: f64::EPSILON };
+            return Reference { course, floor: f64::EPSILON, gate: 0.0 };
         }
         let Some(problem) = smooth::converged(self.scene) else {
-            return Reference { course: Vec::new(), floor: f64::EPSILON };
+            return Reference { course: Vec::new(), floor: f64::EPSILON, gate: 0.0 };
         };
         let [coarse, fine] = [1, 2].map(|refined| problem.course(&times, refined));
         let pairs = coarse.iter().flatten().zip(fine.iter().flatten());
@@ -184,6 +190,7 @@ impl Case {
             let place = |((body, angle), &position)| Exact { body, position, angle };
             movable.zip(places).map(place).collect()
         };
-        Reference { course: fine.iter().map(exact).collect(), floor: (apart / size).max(f64::EPSILON) }
+        let floor = (4.0 * apart / size).max(4.0 * f64::EPSILON);
+        Reference { course: fine.iter().map(exact).collect(), floor, gate: GATE * floor }
     }
 }

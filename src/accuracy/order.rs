@@ -8,11 +8,13 @@ pub const MIN_HALVINGS: usize = 4;
 /// How far an observed order may be from the table's.
 pub const TOLERANCE: f64 = 0.15;
 
-/// An error this many times the floor of round-off and reference is still the method's own.
-const ABOVE_FLOOR: f64 = 100.0;
+/// An error this many times round-off is still the method's own.
+const ABOVE_ROUND_OFF: f64 = 50.0;
+/// An error this many times the reference's floor moves the slope over five points by a fiftieth at most.
+const ABOVE_FLOOR: f64 = 12.5;
 
 /// An error above this is not yet in the range where a step's order shows.
-const ASYMPTOTIC: f64 = 0.05;
+const ASYMPTOTIC: f64 = 0.3;
 
 /// An observed order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +34,7 @@ impl Order {
         let clear = |&&(h, error): &&(f64, f64)| {
             // Round-off adds up like a walk at best, like a march at worst: here in between.
             let round_off = f64::EPSILON * (horizon_secs / h).powf(0.75);
-            error > ABOVE_FLOOR * floor.max(round_off)
+            error > (ABOVE_ROUND_OFF * round_off).max(ABOVE_FLOOR * floor)
         };
         let count = points.iter().take_while(clear).count();
         let first = count.checked_sub(MIN_HALVINGS + 1)?;

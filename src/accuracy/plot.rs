@@ -16,6 +16,19 @@ const LEGEND_PX: u32 = 300;
 const LEAST: f64 = 1e-17;
 const GREY: RGBColor = RGBColor(120, 120, 120);
 
+/// Whole powers of ten around all values.
+fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let range = around(values);
+    10f64.powf(range.start.log10().floor())..10f64.powf(range.end.log10().ceil())
+}
+
+/// The palette's colours, then brown and grey.
+fn colour(k: usize) -> RGBColor {
+    let more = [RGBColor(120, 80, 30), RGBColor(90, 90, 90)];
+    let all = PALETTE.len() + more.len();
+    *PALETTE.iter().chain(&more).nth(k % all).unwrap_or(&BLACK)
+}
+
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// One method at one precision.
@@ -29,14 +42,14 @@ struct Line<'a> {
 /// A case: error on x, time on y; `None` where no run came to its end.
 pub(super) fn case(results: &Results) -> anyhow::Result<Option<String>> {
     let lines = lines(results);
-    let best = pareto(&results.rows);
+    let best = pareto(results);
     let point = |row: &Row| Some((row.error?.max(LEAST), row.ns_total?));
     let drawn = || lines.iter().flat_map(|line| line.rows.iter().filter_map(|row| point(row)));
     if drawn().next().is_none() {
         return Ok(None);
     }
-    let xs = around(drawn().map(|p| p.0).chain([results.floor.max(LEAST)]));
-    let ys = around(drawn().map(|p| p.1));
+    let xs = decades(drawn().map(|p| p.0).chain([results.floor.max(LEAST)]));
+    let ys = decades(drawn().map(|p| p.1));
     let case = results.case;
     let svg = to_svg(SIZE, |area| {
         let (left, right) = area.split_horizontally(SIZE.0 - LEGEND_PX);
@@ -63,7 +76,7 @@ pub(super) fn case(results: &Results) -> anyhow::Result<Option<String>> {
 fn lines(results: &Results) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
     let mut methods: Vec<&str> = Vec::new();
-    for row in &results.rows {
+    for row in results.told() {
         let precision = if row.precision == "f32" { Precision::F32 } else { Precision::F64 };
         if row.lanes != Settings::default().with_precision(precision).lanes {
             continue;
@@ -71,7 +84,7 @@ fn lines(results: &Results) -> Vec<Line<'_>> {
         if !methods.contains(&row.method.as_str()) {
             methods.push(&row.method);
         }
-        let color = PALETTE[(methods.len() - 1) % PALETTE.len()];
+        let color = colour(methods.len() - 1);
         let name = format!("{} {}", row.method, row.precision);
         match lines.last_mut().filter(|line| line.name == name) {
             Some(line) => line.rows.push(row),
@@ -165,10 +178,15 @@ fn staircase(chart: &mut Chart<'_, '_>, best: &[&Row], most: f64) -> anyhow::Res
     Ok(())
 }
 
+/// Height of the k-th entry of a legend, pixels from the top.
+fn entry_y(k: usize) -> anyhow::Result<i32> {
+    Ok(56 + 20 * i32::try_from(k)?)
+}
+
 /// Names beside the curves, with the order observed.
 fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, lines: &[Line<'_>]) -> anyhow::Result<()> {
     let entry = |k: usize, name: &str, color: RGBAColor, hollow: bool| -> anyhow::Result<()> {
-        let y = 56 + 20 * k as i32;
+        let y = entry_y(k)?;
         plot(
             area.draw(&PathElement::new([(4, y), (28, y)], color.stroke_width(if hollow { 1 } else { 2 }))),
         )?;
@@ -181,7 +199,7 @@ fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, lines: &[Line<'_>]) -> anyh
         let order = order.map_or_else(String::new, |order| format!(", order {order:.2}"));
         entry(k, &format!("{}{order}", line.name), line.color.to_rgba(), line.precision == "f32")?;
     }
-    let y = 56 + 20 * lines.len() as i32;
+    let y = entry_y(lines.len())?;
     plot(area.draw(&PathElement::new([(4, y), (28, y)], BLACK.stroke_width(1))))?;
     plot(area.draw(&Text::new("not beaten by any run", (36, y - 6), ("sans-serif", 13))))
 }
@@ -214,7 +232,7 @@ pub(super) fn profiles(level: f64, profiles: &[Profile]) -> anyhow::Result<Strin
         )?;
         for (k, profile) in profiles.iter().enumerate() {
             // Rows come in f64, then f32.
-            let (color, single) = (PALETTE[k / 2 % PALETTE.len()], profile.method.ends_with("f32"));
+            let (color, single) = (colour(k / 2), profile.method.ends_with("f32"));
             let width = if single { 1 } else { 2 };
             let mut steps = vec![(1.0, profile.share(1.0))];
             for ratio in profile.ratios.iter().filter(|ratio| **ratio > 1.0 && ratio.is_finite()) {
@@ -230,7 +248,7 @@ pub(super) fn profiles(level: f64, profiles: &[Profile]) -> anyhow::Result<Strin
 }
 
 fn profile_entry(area: &Area<'_>, k: usize, profile: &Profile, style: ShapeStyle) -> anyhow::Result<()> {
-    let y = 56 + 20 * k as i32;
+    let y = entry_y(k)?;
     plot(area.draw(&PathElement::new([(4, y), (28, y)], style)))?;
     plot(area.draw(&Text::new(profile.method.clone(), (36, y - 6), ("sans-serif", 13))))
 }

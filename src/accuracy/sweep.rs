@@ -95,6 +95,15 @@ pub struct Results {
     pub rows: Vec<Row>,
     /// How sure its reference is, in the error's unit.
     pub floor: f64,
+    /// Errors below are not plotted; see [`Reference::gate`].
+    pub gate: f64,
+}
+
+impl Results {
+    /// Rows that came to their end with an error the reference can tell.
+    pub fn told(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| row.error.is_some_and(|error| error >= self.gate))
+    }
 }
 
 /// Runs a case with every method, step, precision and width.
@@ -109,7 +118,47 @@ pub fn measure(case: &'static Case, effort: Effort) -> anyhow::Result<Results> {
     for &(method, expect) in case.methods {
         bench.method(method, expect, &mut rows)?;
     }
-    Ok(Results { case, rows, floor: bench.reference.floor })
+    let Reference { floor, gate, .. } = bench.reference;
+    Ok(Results { case, rows, floor, gate })
+}
+
+/// What a method showed in `f64`.
+#[derive(Clone, Debug)]
+pub struct Observed {
+    /// The method.
+    pub method: Method,
+    /// What is expected of it.
+    pub expect: Expect,
+    /// Seconds per step and error, from the longest step on; no error where the run did not stay finite.
+    pub errors: Vec<(f64, Option<f64>)>,
+    /// The order they show.
+    pub order: Option<Order>,
+    /// Was what is expected met at every step?
+    pub met: bool,
+}
+
+/// The errors of a full sweep in `f64` at the usual width, and nothing timed.
+///
+/// # Errors
+/// A scene that cannot be run.
+pub fn observe(case: &'static Case) -> anyhow::Result<Vec<Observed>> {
+    let scene = case.scene()?;
+    let reference = case.reference(&scene);
+    let bench = Bench { case, effort: Effort::FULL, timed: (scene.clone(), 1), scene, reference };
+    let of = |&(method, expect): &(Method, Expect)| {
+        let settings = Settings { continuous: false, ..Settings::default().with_precision(Precision::F64) };
+        let (settings, paces) = (method.settings(settings), bench.paces(method));
+        let errors: Vec<_> =
+            paces.iter().map(|&pace| bench.error(settings, pace)).collect::<Result<_, _>>()?;
+        let order = bench.order(&paces, &errors);
+        let line = Line { bench: &bench, method, expect, settings, order };
+        let finest = errors.last().copied().flatten();
+        let met = |(&pace, &error): (&Pace, &Option<f64>)| line.met(pace, error, finest) == Some(true);
+        let met = paces.iter().zip(&errors).all(met);
+        let errors = paces.iter().map(|pace| pace.h_secs).zip(errors).collect();
+        Ok(Observed { method, expect, errors, order, met })
+    };
+    case.methods.iter().map(of).collect()
 }
 
 /// A case under measurement.
@@ -289,8 +338,10 @@ impl Line<'_> {
         };
         let in_f64 = self.settings.precision == Precision::F64;
         match self.expect {
+            // A quick sweep may be too short to show an order.
+            Expect::Order(_) if !in_f64 || (self.order.is_none() && self.bench.effort.quick) => None,
             Expect::Order(wanted) => {
-                in_f64.then(|| self.order.is_some_and(|got| (got.order - wanted).abs() <= TOLERANCE))
+                Some(self.order.is_some_and(|got| (got.order - wanted).abs() <= TOLERANCE))
             }
             Expect::Exact(times) => {
                 Some(error.is_some_and(|error| error <= times * f64::from(pace.steps) * epsilon))

@@ -71,6 +71,7 @@ pub fn case(results: &Results, folder: &Path) -> anyhow::Result<()> {
         "item": results.case.item,
         "about": results.case.about,
         "reference_floor": results.floor,
+        "plotted_from": results.gate,
         "rows": results.rows,
     });
     std::fs::write(path("json"), serde_json::to_string_pretty(&document)?)?;

@@ -98,21 +98,32 @@ fn orders(results: &Results) -> Vec<Vec<String>> {
         let least = |of: fn(&Row) -> Option<f64>, precision: &str| {
             let values = own().filter(|row| row.precision == precision).filter_map(of);
             let least = values.fold(f64::INFINITY, f64::min);
-            if least.is_finite() { format!("{least:.1e}") } else { "–".to_owned() }
+            if least.is_finite() { Some(least) } else { None }
         };
         let said: Vec<bool> = own().filter_map(|row| row.met).collect();
         let first = own().next();
         vec![
             results.case.name.to_owned(),
             method.to_owned(),
-            first.and_then(|row| row.order).map_or_else(|| "–".to_owned(), |order| format!("{order:.3}")),
+            or_dash(first.and_then(|row| row.order).map(|order| format!("{order:.3}"))),
             first.map_or_else(String::new, |row| row.target.clone()),
-            if said.iter().all(|met| *met) { "yes" } else { "NO" }.to_owned(),
-            least(|row| row.error, "f64"),
-            least(|row| row.error, "f32"),
-            least(|row| row.ns_per_step, "f64"),
-            least(|row| row.ns_per_step, "f32"),
+            if said.is_empty() {
+                "–"
+            } else if said.iter().all(|met| *met) {
+                "yes"
+            } else {
+                "no"
+            }
+            .to_owned(),
+            or_dash(least(|row| row.error, "f64").map(|error| format!("{error:.1e}"))),
+            or_dash(least(|row| row.error, "f32").map(|error| format!("{error:.1e}"))),
+            or_dash(least(|row| row.ns_per_step, "f64").map(|ns| format!("{ns:.1}"))),
+            or_dash(least(|row| row.ns_per_step, "f32").map(|ns| format!("{ns:.1}"))),
         ]
     };
     methods.into_iter().map(line).collect()
+}
+
+fn or_dash(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "–".to_owned())
 }

@@ -5,6 +5,8 @@
 
 /// Rounds of the mean: two more than any modulus below 1 − 10⁻¹⁰ needs.
 const ROUNDS: usize = 10;
+/// By so much is the phase doubled on the way.
+const DOUBLED: f64 = (1u32 << ROUNDS) as f64;
 
 /// K(k) = ∫₀^½π dφ/√(1 − k² sin² φ), of the modulus k in 0…1 (exclusive).
 pub fn complete_first(modulus: f64) -> f64 {
@@ -24,7 +26,7 @@ pub fn jacobi(u: f64, modulus: f64) -> [f64; 3] {
         (a, b) = (f64::midpoint(a, b), (a * b).sqrt());
         *ratio = half_gap / a;
     }
-    let mut phase = 2f64.powi(ROUNDS as i32) * a * u;
+    let mut phase = DOUBLED * a * u;
     for ratio in ratio.iter().rev() {
         phase = 0.5 * (phase + (ratio * phase.sin()).asin());
     }

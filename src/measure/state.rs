@@ -112,7 +112,11 @@ impl Invariants {
 
 impl Invariants {
     /// Adds what bodies attract each other with, each a mass, kg, and a centroid, metres.
-    pub fn add_attraction(&mut self, forces: &Forces, bodies: impl Iterator<Item = (f64, [f64; 2])> + Clone) {
+    pub fn add_attraction(
+        &mut self,
+        forces: &Forces,
+        bodies: &(impl Iterator<Item = (f64, [f64; 2])> + Clone),
+    ) {
         if forces.attraction.is_none() {
             return;
         }
@@ -131,7 +135,7 @@ pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
     let placed = |slot: usize| {
         (1.0 / bodies.inv_mass[slot].to_f64(), [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()])
     };
-    sum.add_attraction(forces, dynamic.clone().map(placed));
+    sum.add_attraction(forces, &dynamic.clone().map(placed));
     for slot in dynamic {
         let read = |column: &Column<R>| column[slot].to_f64();
         let matter = [1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia)];

@@ -6,9 +6,9 @@ use crate::scene::cases::Exact;
 use crate::scene::{BodySpec, Scene, ShapeSpec};
 
 /// kB/m of the charged particles, rad/s.
-const RATE: f64 = 1.5;
+const RATE: f64 = 3.0;
 
-/// A13: 2 kg in a field of 3 kg/s: a circle of radius v/1.5.
+/// A13: 2 kg in a field of 6 kg/s: a circle of radius v/3.
 pub(super) fn circle() -> Scene {
     let forces = Forces { magnetic: Some(2.0 * RATE), ..Forces::default() };
     scene("a charged particle goes round", vec![particle([0.0; 2], [1.0, 0.5], 2.0)], forces)

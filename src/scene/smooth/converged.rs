@@ -25,7 +25,7 @@ const PROBLEMS: &[Problem] = &[
         start: || vec![0.0, 0.0, 20.0, 20.0],
         slope: shot,
         places: first_place,
-        steps_per_sec: 32.0,
+        steps_per_sec: 64.0,
     },
     Problem {
         scene: "a11_double_pendulum",
@@ -39,7 +39,7 @@ const PROBLEMS: &[Problem] = &[
     },
     Problem {
         scene: "a14_arenstorf",
-        start: || vec![0.994, 0.0, 0.0, -2.001_585_106_379_082_522_4],
+        start: || vec![0.994, 0.0, 0.0, -2.001_585_106_379_082_4],
         slope: arenstorf,
         places: first_place,
         steps_per_sec: 1024.0,
@@ -90,7 +90,7 @@ fn first_place(y: &[f64]) -> Vec<[f64; 2]> {
 
 /// v′ = g − k|v|v.
 fn shot(y: &[f64], d: &mut [f64]) {
-    let drag = 0.05 * y[2].hypot(y[3]);
+    let drag = 0.4 * y[2].hypot(y[3]);
     (d[0], d[1]) = (y[2], y[3]);
     (d[2], d[3]) = (-drag * y[2], -9.81 - drag * y[3]);
 }

@@ -21,15 +21,15 @@ pub(super) fn gravity_at(scene: &Scene, t: f64) -> Vec<Exact> {
     at([along(0), along(1)])
 }
 
-/// A2: 2 kg under gravity and a drag of 1.5 kg/s, in a wind.
+/// A2: 2 kg under gravity and a drag of 12 kg/s, in a wind.
 pub(super) fn linear_drag() -> Scene {
-    let forces = Forces { linear_drag: Some(1.5), wind: Some(WIND), ..Forces::gravity() };
+    let forces = Forces { linear_drag: Some(12.0), wind: Some(WIND), ..Forces::gravity() };
     scene("a throw with linear drag in a wind", vec![particle([0.0; 2], [3.0, 4.0], 2.0)], forces)
 }
 
 /// v = v∞ + (v₀ − v∞)e^(−kt/m).
 pub(super) fn linear_drag_at(scene: &Scene, t: f64) -> Vec<Exact> {
-    const RATE: f64 = 1.5 / 2.0;
+    const RATE: f64 = 12.0 / 2.0;
     let v0 = only(scene).velocity;
     let faded = 1.0 - (-RATE * t).exp();
     let along = |k: usize| {
@@ -39,20 +39,20 @@ pub(super) fn linear_drag_at(scene: &Scene, t: f64) -> Vec<Exact> {
     at([along(0), along(1)])
 }
 
-/// A3: 2 kg dropped, with a drag of 0.5 kg/m.
+/// A3: 0.25 kg dropped, with a drag of 0.5 kg/m.
 pub(super) fn quadratic_drop() -> Scene {
     let forces = Forces { quadratic_drag: Some(0.5), ..Forces::gravity() };
-    scene("a drop with quadratic drag", vec![particle([0.0; 2], [0.0; 2], 2.0)], forces)
+    scene("a drop with quadratic drag", vec![particle([0.0; 2], [0.0; 2], 0.25)], forces)
 }
 
 /// y = −(`v_t`²/g) ln cosh(gt/`v_t`), `v_t` = √(mg/k).
 pub(super) fn quadratic_drop_at(_: &Scene, t: f64) -> Vec<Exact> {
-    let (g, fastest) = (9.81f64, (2.0f64 * 9.81 / 0.5).sqrt());
+    let (g, fastest) = (9.81f64, (0.25f64 * 9.81 / 0.5).sqrt());
     at([0.0, -(fastest * fastest / g) * (g * t / fastest).cosh().ln()])
 }
 
-/// A4: 1 kg shot at 45° with a drag of 0.05 kg/m: no closed form is known.
+/// A4: 1 kg shot at 45° with a drag of 0.4 kg/m: no closed form is known.
 pub(super) fn quadratic_shot() -> Scene {
-    let forces = Forces { quadratic_drag: Some(0.05), ..Forces::gravity() };
+    let forces = Forces { quadratic_drag: Some(0.4), ..Forces::gravity() };
     scene("a shot with quadratic drag", vec![particle([0.0; 2], [20.0, 20.0], 1.0)], forces)
 }

@@ -33,7 +33,7 @@ pub(super) fn kepler_at(scene: &Scene, t: f64) -> Vec<Exact> {
 /// Mass of the Moon over that of Earth and Moon.
 pub const ARENSTORF_MU: f64 = 0.012_277_471;
 /// After so many seconds the orbit is closed.
-pub const ARENSTORF_PERIOD_SECS: f64 = 17.065_216_560_157_962_558_9;
+pub const ARENSTORF_PERIOD_SECS: f64 = 17.065_216_560_157_964;
 
 /// A14: a satellite between Earth and Moon in the frame that turns with them at 1 rad/s: the spring of −1 N/m is the
 /// centrifugal force of 1 kg, the magnetic force of 2 kg/s its Coriolis force. The orbit closes.
@@ -48,7 +48,7 @@ pub(super) fn arenstorf() -> Scene {
         companion: Some(Central { center: [1.0 - mu, 0.0], strength: mu }),
         ..Forces::default()
     };
-    let satellite = particle([0.994, 0.0], [0.0, -2.001_585_106_379_082_522_4], 1.0);
+    let satellite = particle([0.994, 0.0], [0.0, -2.001_585_106_379_082_4], 1.0);
     scene("a closed orbit between Earth and Moon", vec![satellite], forces)
 }
 

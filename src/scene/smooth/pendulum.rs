@@ -37,7 +37,9 @@ const ROD: [f64; 2] = [0.5, 0.01];
 pub(super) fn rod() -> Scene {
     let rod = BodySpec::new(ShapeSpec::Box(ROD), [ROD[0], 0.0]).surface(0.0, 0.0).mass(1.0);
     let joints = vec![JointSpec::new(0, 1, JointKind::hinge([0.0; 2]))];
-    Scene { joints, ..scene("a rod on a hinge let go level", vec![post(), rod], Forces::gravity()) }
+    // Beside the rod's end, not in it.
+    let post = disc(0.02, [-0.02, 0.0]).fixed();
+    Scene { joints, ..scene("a rod on a hinge let go level", vec![post, rod], Forces::gravity()) }
 }
 
 /// As [`pendulum_at`], of the length I/(md) = ⅔L·(1 + ¼(thickness/length)²): the slender rod's 2L/3 but for its thickness.
