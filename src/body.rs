@@ -214,7 +214,7 @@ impl<R: Real> Bodies<R> {
         self.alive[slots.start..slots.end.min(self.len())].iter().filter(|&&alive| alive).count()
     }
     /// Slots of living bodies, ascending.
-    pub fn slots(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn slots(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (1..self.len()).filter(|&slot| self.alive[slot])
     }
     /// How often the slot has been given anew.

@@ -1,15 +1,18 @@
 //! Fields a scene may carry, and what they do to a block of bodies.
 //!
 //! A scene's [`Forces`] become a list of [`Field`]s; a field that is absent is not in the list and costs
-//! nothing. The list is walked once per block of [`BLOCK`] lane values, so an enum is matched outside
-//! the lane loop.
+//! nothing. The list is walked once per block of [`BLOCK`](crate::integrate::BLOCK) lane values, so an enum is
+//! matched outside the lane loop.
+
+mod field;
 
 use serde::{Deserialize, Serialize};
 
-use crate::integrate::BLOCK;
-use crate::lanes::{Lanes, Real};
+use crate::lanes::Real;
 use crate::pair;
-use crate::vec2::Vec2;
+use crate::settings::Settings;
+
+pub use field::{Field, Matter, acceleration};
 
 /// A field whose coefficients cannot be run with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,7 +36,17 @@ pub enum ForceError {
     /// Wind acts through drag.
     #[error("force wind: has no effect without linear_drag or quadratic_drag; give one of them")]
     WindWithoutDrag,
+    /// A block of the narrowest common width holds so many.
+    #[error("force attraction: at most {MOST_ATTRACTED} bodies attract each other, got {0}")]
+    TooManyAttracted(usize),
+    /// Bodies that attract each other must all move at once.
+    #[error("force attraction: all bodies must move at once; run it without {0}")]
+    NotAtOnce(&'static str),
 }
+
+/// Bodies that may attract each other: with the world's own slot they fill one block of the widest `f64` lanes,
+/// whose stages are in step.
+pub const MOST_ATTRACTED: usize = 15;
 
 /// A pull towards a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +68,20 @@ pub struct Central {
     pub center: [f64; 2],
     /// μ = GM, m³/s²: the acceleration at distance r is μ/r².
     pub strength: f64,
+}
+
+/// A push that swings in time: a = amplitude·cos(rate·t + phase).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// m/s².
+    #[serde(deserialize_with = "pair::required")]
+    pub amplitude: [f64; 2],
+    /// rad/s.
+    pub rate: f64,
+    /// At the first step's beginning, rad.
+    #[serde(default)]
+    pub phase: f64,
 }
 
 /// The fields of a scene, as they are written down. All act at the centroid of dynamic bodies.
@@ -82,6 +109,19 @@ pub struct Forces {
     /// k in F = k·(`v_y`, −`v_x`), kg/s (charge times a field out of the plane).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic: Option<f64>,
+    /// A second centre that pulls like `central`. With k = 2m of `magnetic` and a spring of −m about the origin the
+    /// frame turns at 1 rad/s and these are the two primaries of the restricted three-body problem.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion: Option<Central>,
+    /// λ in a = −λ·(2xy, x² − y²), 1/(m·s²): the cubic part of the potential of Hénon and Heiles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub henon_heiles: Option<f64>,
+    /// A push that swings in time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive: Option<Drive>,
+    /// G in a = ΣG·`m_j`·r/|r|³, m³/(kg·s²): dynamic bodies attract each other, at most [`MOST_ATTRACTED`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attraction: Option<f64>,
 }
 
 impl Forces {
@@ -99,6 +139,10 @@ impl Forces {
             ("spring", self.spring.is_some()),
             ("central", self.central.is_some()),
             ("magnetic", self.magnetic.is_some()),
+            ("companion", self.companion.is_some()),
+            ("henon_heiles", self.henon_heiles.is_some()),
+            ("drive", self.drive.is_some()),
+            ("attraction", self.attraction.is_some()),
         ];
         given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
     }
@@ -117,6 +161,7 @@ impl Forces {
     /// Those of [`Forces::check`], of coefficients rounded to `R`.
     pub fn check_in<R: Real>(&self) -> Result<(), ForceError> {
         let pair = |p: Option<[f64; 2]>| p.into_iter().flatten();
+        let centre = |c: Option<Central>| c.into_iter().flat_map(|c| [c.center[0], c.center[1], c.strength]);
         let values = (pair(self.gravity).map(|v| ("gravity", v)))
             .chain(pair(self.wind).map(|v| ("wind", v)))
             .chain(self.linear_drag.map(|v| ("linear_drag", v)))
@@ -127,13 +172,17 @@ impl Forces {
                     .flat_map(|s| [s.anchor[0], s.anchor[1], s.stiffness])
                     .map(|v| ("spring", v)),
             )
+            .chain(centre(self.central).map(|v| ("central", v)))
+            .chain(self.magnetic.map(|v| ("magnetic", v)))
+            .chain(centre(self.companion).map(|v| ("companion", v)))
+            .chain(self.henon_heiles.map(|v| ("henon_heiles", v)))
             .chain(
-                self.central
+                self.drive
                     .into_iter()
-                    .flat_map(|c| [c.center[0], c.center[1], c.strength])
-                    .map(|v| ("central", v)),
+                    .flat_map(|d| [d.amplitude[0], d.amplitude[1], d.rate, d.phase])
+                    .map(|v| ("drive", v)),
             )
-            .chain(self.magnetic.map(|v| ("magnetic", v)));
+            .chain(self.attraction.map(|v| ("attraction", v)));
         for (field, value) in values {
             if !R::from_f64(value).is_finite() {
                 return Err(ForceError::NonFinite { field, value });
@@ -150,6 +199,24 @@ impl Forces {
         Ok(())
     }
 
+    /// Refuses what bodies that attract each other cannot be run with: `slots` are those of the world, its own included.
+    ///
+    /// # Errors
+    /// More bodies than one block holds, settings by which some of them would move without the others.
+    pub fn check_coupling(&self, slots: usize, settings: &Settings) -> Result<(), ForceError> {
+        if self.attraction.is_none() {
+            return Ok(());
+        }
+        if slots > MOST_ATTRACTED + 1 {
+            return Err(ForceError::TooManyAttracted(slots - 1));
+        }
+        let apart = [("sleep", settings.sleep), ("max-sag", settings.max_sag.is_some())];
+        match apart.into_iter().find(|(_, on)| *on) {
+            Some((setting, _)) => Err(ForceError::NotAtOnce(setting)),
+            None => Ok(()),
+        }
+    }
+
     /// The fields present, rounded to the engine's precision, constant ones first.
     pub fn fields<R: Real>(&self) -> Vec<Field<R>> {
         let pair = |v: [f64; 2]| v.map(R::from_f64);
@@ -162,15 +229,29 @@ impl Forces {
             self.spring
                 .map(|s| Field::Spring { anchor: pair(s.anchor), stiffness: R::from_f64(s.stiffness) }),
         );
-        fields.extend(
-            self.central
-                .map(|c| Field::Central { center: pair(c.center), strength: R::from_f64(c.strength) }),
-        );
+        for c in [self.central, self.companion].into_iter().flatten() {
+            fields.push(Field::Central { center: pair(c.center), strength: R::from_f64(c.strength) });
+        }
         fields.extend(self.magnetic.map(|k| Field::Magnetic(R::from_f64(k))));
+        fields.extend(self.henon_heiles.map(|k| Field::HenonHeiles(R::from_f64(k))));
+        fields.extend(self.drive.map(|d| Field::Drive {
+            amplitude: pair(d.amplitude),
+            rate: d.rate,
+            phase: d.phase,
+            begun: d.phase,
+        }));
+        fields.extend(self.attraction.map(|g| Field::Attraction(R::from_f64(g))));
         fields
     }
 
-    /// Potential energy of a body of `mass` kg with its centroid at `position`, J (drags and magnetic fields have none).
+    /// The same fields for a world that begins `secs` later.
+    #[must_use]
+    pub fn after(self, secs: f64) -> Self {
+        Self { drive: self.drive.map(|d| Drive { phase: d.phase + d.rate * secs, ..d }), ..self }
+    }
+
+    /// Potential energy of a body of `mass` kg with its centroid at `position`, J. Drags, magnetic fields and drives
+    /// have none; that of mutual attraction belongs to pairs, see [`Forces::pair_energy`].
     pub fn potential_energy(&self, mass: f64, position: [f64; 2]) -> f64 {
         let [x, y] = position;
         let gravity = self.gravity.map_or(0.0, |[gx, gy]| -mass * (gx * x + gy * y));
@@ -178,187 +259,18 @@ impl Forces {
             let d = (x - s.anchor[0]).hypot(y - s.anchor[1]);
             0.5 * s.stiffness * d * d
         });
-        let central = self.central.map_or(0.0, |c| {
-            -mass * c.strength / (x - c.center[0]).hypot(y - c.center[1]).max(f64::MIN_POSITIVE)
-        });
-        gravity + spring + central
-    }
-}
-
-/// One field, ready for lanes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Field<R> {
-    /// Uniform acceleration.
-    Gravity([R; 2]),
-    /// F = −k·(v − wind).
-    LinearDrag {
-        /// kg/s.
-        k: R,
-        /// m/s.
-        wind: [R; 2],
-    },
-    /// F = −k·|v − wind|·(v − wind).
-    QuadraticDrag {
-        /// kg/m.
-        k: R,
-        /// m/s.
-        wind: [R; 2],
-    },
-    /// F = −stiffness·(x − anchor).
-    Spring {
-        /// Metres.
-        anchor: [R; 2],
-        /// N/m.
-        stiffness: R,
-    },
-    /// a = −μ·r/|r|³.
-    Central {
-        /// Metres.
-        center: [R; 2],
-        /// m³/s².
-        strength: R,
-    },
-    /// F = k·(`v_y`, −`v_x`).
-    Magnetic(R),
-    /// A constant force per body, from its columns.
-    PerBody,
-}
-
-impl<R: Real> Field<R> {
-    /// Is its acceleration the same wherever a body is and however it moves?
-    pub fn is_constant(&self) -> bool {
-        matches!(self, Self::Gravity(_) | Self::PerBody)
-    }
-}
-
-/// What fields need to know of a block of bodies, beside position and velocity.
-#[derive(Clone, Copy, Debug)]
-pub struct Matter<'a, L> {
-    /// 1/kg; 0 for static and kinematic bodies.
-    pub inv_mass: &'a [L; BLOCK],
-    /// Constant force in x and y, N, where some body has one.
-    pub force: Option<(&'a [L; BLOCK], &'a [L; BLOCK])>,
-}
-
-/// The acceleration of a block of bodies at `position` with `velocity`, m/s²: the sum over `fields` in
-/// their order; 0 for static and kinematic bodies.
-#[inline(always)]
-pub fn acceleration<L: Lanes>(
-    fields: &[Field<L::Elem>],
-    matter: Matter<'_, L>,
-    position: &[Vec2<L>; BLOCK],
-    velocity: &[Vec2<L>; BLOCK],
-) -> [Vec2<L>; BLOCK] {
-    let mut sum = [Vec2::zero(); BLOCK];
-    for field in fields {
-        match *field {
-            Field::Gravity(g) => {
-                let g = Vec2::splat(g);
-                for k in 0..BLOCK {
-                    // Not g·m·(1/m): a body falls with g to the bit, whatever its mass.
-                    let held = matter.inv_mass[k].le(L::zero());
-                    sum[k] = sum[k] + Vec2::select(held, Vec2::zero(), g);
-                }
-            }
-            Field::LinearDrag { k: drag, wind } => {
-                let (drag, wind) = (L::splat(drag), Vec2::splat(wind));
-                for k in 0..BLOCK {
-                    sum[k] = sum[k] - (velocity[k] - wind) * (drag * matter.inv_mass[k]);
-                }
-            }
-            Field::QuadraticDrag { k: drag, wind } => {
-                let (drag, wind) = (L::splat(drag), Vec2::splat(wind));
-                for k in 0..BLOCK {
-                    let air = velocity[k] - wind;
-                    sum[k] = sum[k] - air * (air.length_squared().sqrt() * drag * matter.inv_mass[k]);
-                }
-            }
-            Field::Spring { anchor, stiffness } => {
-                let (anchor, stiffness) = (Vec2::splat(anchor), L::splat(stiffness));
-                for k in 0..BLOCK {
-                    sum[k] = sum[k] - (position[k] - anchor) * (stiffness * matter.inv_mass[k]);
-                }
-            }
-            Field::Central { center, strength } => {
-                let (center, strength) = (Vec2::splat(center), L::splat(strength));
-                for k in 0..BLOCK {
-                    let r = position[k] - center;
-                    let square = r.length_squared();
-                    let cube = square * square.sqrt();
-                    // At the centre itself, and for held bodies, no pull rather than 0/0.
-                    let none = matter.inv_mass[k].le(L::zero()) | cube.le(L::zero());
-                    let factor = L::select(none, L::zero(), strength / L::select(none, L::one(), cube));
-                    sum[k] = sum[k] - r * factor;
-                }
-            }
-            Field::Magnetic(strength) => {
-                let strength = L::splat(strength);
-                for k in 0..BLOCK {
-                    sum[k] = sum[k] + velocity[k].right() * (strength * matter.inv_mass[k]);
-                }
-            }
-            Field::PerBody => {
-                if let Some((fx, fy)) = matter.force {
-                    for k in 0..BLOCK {
-                        sum[k] = sum[k] + Vec2::new(fx[k], fy[k]) * matter.inv_mass[k];
-                    }
-                }
-            }
-        }
-    }
-    sum
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(forces: &Forces, x: [f64; 2], v: [f64; 2], inv_mass: f64) -> [f64; 2] {
-        let (mass, no_force) = ([inv_mass; BLOCK], None);
-        let matter = Matter { inv_mass: &mass, force: no_force };
-        let a =
-            acceleration::<f64>(&forces.fields(), matter, &[Vec2::splat(x); BLOCK], &[Vec2::splat(v); BLOCK]);
-        [a[0].x, a[0].y]
-    }
-
-    #[test]
-    fn each_field_has_its_formula() {
-        let none = Forces::default();
-        assert_eq!(at(&Forces::gravity(), [1.0, 2.0], [3.0, 4.0], 0.5), [0.0, -9.81]);
-        let drag = Forces { linear_drag: Some(2.0), wind: Some([1.0, 0.0]), ..none };
-        assert_eq!(at(&drag, [0.0; 2], [3.0, 4.0], 0.5), [-2.0, -4.0]);
-        let drag = Forces { quadratic_drag: Some(2.0), ..none };
-        assert_eq!(at(&drag, [0.0; 2], [3.0, 4.0], 0.5), [-15.0, -20.0]);
-        let spring = Forces { spring: Some(Spring { anchor: [1.0, 1.0], stiffness: 4.0 }), ..none };
-        assert_eq!(at(&spring, [2.0, 3.0], [0.0; 2], 0.5), [-2.0, -4.0]);
-        let central = Forces { central: Some(Central { center: [0.0, 0.0], strength: 8.0 }), ..none };
-        assert_eq!(at(&central, [0.0, 2.0], [0.0; 2], 0.5), [0.0, -2.0]);
-        assert_eq!(at(&central, [0.0, 0.0], [0.0; 2], 0.5), [0.0, 0.0]);
-        let magnetic = Forces { magnetic: Some(2.0), ..none };
-        assert_eq!(at(&magnetic, [0.0; 2], [3.0, 4.0], 0.5), [4.0, -3.0]);
-    }
-
-    #[test]
-    fn held_bodies_feel_nothing() {
-        let all = Forces {
-            gravity: Some([1.0, 2.0]),
-            wind: Some([5.0, 5.0]),
-            linear_drag: Some(1.0),
-            quadratic_drag: Some(1.0),
-            spring: Some(Spring { anchor: [1.0, 1.0], stiffness: 4.0 }),
-            central: Some(Central { center: [0.0, 0.0], strength: 8.0 }),
-            magnetic: Some(1.0),
+        let centre = |c: Option<Central>| {
+            c.map_or(0.0, |c| {
+                -mass * c.strength / (x - c.center[0]).hypot(y - c.center[1]).max(f64::MIN_POSITIVE)
+            })
         };
-        assert_eq!(at(&all, [2.0, 3.0], [1.0, 1.0], 0.0), [0.0, 0.0]);
+        let cubic = self.henon_heiles.map_or(0.0, |k| mass * k * (x * x * y - y * y * y / 3.0));
+        gravity + spring + centre(self.central) + centre(self.companion) + cubic
     }
 
-    #[test]
-    fn bad_coefficients_are_named() {
-        let bad = Forces { linear_drag: Some(-1.0), ..Forces::default() };
-        assert_eq!(bad.check(), Err(ForceError::Negative { field: "linear_drag", value: -1.0 }));
-        let bad = Forces { wind: Some([1.0, 0.0]), ..Forces::default() };
-        assert_eq!(bad.check(), Err(ForceError::WindWithoutDrag));
-        let bad = Forces { gravity: Some([0.0, f64::NAN]), ..Forces::default() };
-        assert!(matches!(bad.check(), Err(ForceError::NonFinite { field: "gravity", .. })));
+    /// Potential energy of the mutual attraction of two bodies, each a mass, kg, and a centroid, metres; J.
+    pub fn pair_energy(&self, a: (f64, [f64; 2]), b: (f64, [f64; 2])) -> f64 {
+        self.attraction
+            .map_or(0.0, |g| -g * a.0 * b.0 / (a.1[0] - b.1[0]).hypot(a.1[1] - b.1[1]).max(f64::MIN_POSITIVE))
     }
 }

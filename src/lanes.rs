@@ -42,6 +42,8 @@ pub trait Real:
 {
     /// One cache line of elements: columns are stored in these, so they are 64-byte aligned.
     type Line: Pod + Debug + Send + Sync;
+    /// The widest lanes of this scalar.
+    type Widest: Lanes<Elem = Self>;
     /// The name users choose it by.
     const NAME: &'static str;
     /// 0.
@@ -69,6 +71,7 @@ pub trait Real:
 
 impl Real for f32 {
     type Line = f32x16;
+    type Widest = f32s::X16;
     const NAME: &'static str = "f32";
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
@@ -95,6 +98,7 @@ impl Real for f32 {
 
 impl Real for f64 {
     type Line = f64x8;
+    type Widest = f64s::X4;
     const NAME: &'static str = "f64";
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;

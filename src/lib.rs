@@ -19,7 +19,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `record`, `processor` (feature `record`) | recordings, written and read; the check that programs make first |
-//! | `report`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; instruction counts; the program `lamina` |
+//! | `report`, `accuracy`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; run time against error; instruction counts; the program `lamina` |
 //! | [`session`] | a run that is acted upon, and done again from its events |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
@@ -99,6 +99,8 @@
 //! - Loops over a counted number of polygon edges: a third more instructions than unrolled to 4, 6 or 8.
 //! - `array::from_fn` inside a gather: left as a call by the compiler, 12 % of a step.
 
+#[cfg(feature = "cli")]
+pub mod accuracy;
 pub mod body;
 pub mod broad;
 pub mod clock;

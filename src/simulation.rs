@@ -293,6 +293,6 @@ where
             return Err(WorldError::Precision { have: <L::Elem as Real>::NAME, asked: settings.precision });
         }
         let parts = (self.bodies().clone(), self.joints().clone().without_impulses());
-        parts.into_world(*self.forces(), settings)
+        parts.into_world(self.forces().after(self.time_secs()), settings)
     }
 }

@@ -114,6 +114,8 @@ pub struct World<L: Lanes> {
     /// How often other fields were set.
     fields_set: u64,
     steps: u64,
+    /// Since the world began, seconds.
+    time_secs: f64,
     counts: Counts,
     times: StageTimes,
 }
@@ -152,6 +154,7 @@ impl<L: Lanes> World<L> {
     ) -> Result<Self, WorldError> {
         settings.check()?;
         forces.check_in::<L::Elem>().map_err(SceneError::from)?;
+        forces.check_coupling(bodies.len(), &settings).map_err(SceneError::from)?;
         Ok(Self {
             bodies,
             joints,
@@ -173,6 +176,7 @@ impl<L: Lanes> World<L> {
             groupings: 0,
             fields_set: 0,
             steps: 0,
+            time_secs: 0.0,
             counts: Counts::default(),
             times: StageTimes::default(),
         })
@@ -210,6 +214,8 @@ impl<L: Lanes> World<L> {
         self.inspect();
         self.bodies.drive(dt_secs);
         self.steps += 1;
+        let begun_secs = self.time_secs;
+        self.time_secs += dt_secs;
         if self.settings.sleep && self.rests() {
             return Ok(());
         }
@@ -218,11 +224,15 @@ impl<L: Lanes> World<L> {
         let traits = self.traits.needed(skips);
 
         let seen = self.find_contacts(traits, rounded, &mut clock);
-        let fields = std::mem::take(&mut self.fields);
+        let mut fields = std::mem::take(&mut self.fields);
+        for field in &mut fields {
+            field.begin(begun_secs);
+        }
         let plan = Plan {
             integrator,
             fields: &fields,
             h_secs: dt_secs / f64::from(substeps),
+            since_secs: 0.0,
             substeps,
             skips,
             moving: solve::pushes(solver),
@@ -350,6 +360,7 @@ impl<L: Lanes> World<L> {
         let task = &Task { plan: &plan, ..*task };
         let mut skipped = integrate::Skipped::default();
         for substep in 0..substeps {
+            let plan = Plan { since_secs: plan.h_secs * f64::from(substep), ..plan };
             skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
             warm = Warm::Onward;
             self.times.lap(Stage::Integrate, clock);

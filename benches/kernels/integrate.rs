@@ -42,7 +42,16 @@ impl Stage for Flight {
     fn run<L: Lanes<Elem = f32>>(&self, bodies: &mut Bodies<f32>) {
         let Self { integrator, ref fields, skips, .. } = *self;
         integrate::fly::<L>(
-            &Plan { integrator, fields, h_secs: DT_SECS, substeps: 1, skips, moving: false, carries: false },
+            &Plan {
+                integrator,
+                fields,
+                h_secs: DT_SECS,
+                since_secs: 0.0,
+                substeps: 1,
+                skips,
+                moving: false,
+                carries: false,
+            },
             bodies,
             None,
         );

@@ -70,6 +70,7 @@ impl Pile {
             integrator: Integrator::VelocityVerlet,
             fields: &self.fields,
             h_secs: DT_SECS,
+            since_secs: 0.0,
             substeps: 1,
             skips: Skips::NONE,
             moving: solve::pushes(solver),

@@ -49,6 +49,14 @@ pub enum BodyError {
         /// What was given.
         density: f64,
     },
+    /// Bodies that attract each other fill one block at most.
+    #[error("body {body}: force attraction: at most {most} bodies attract each other")]
+    Attracted {
+        /// Its number.
+        body: usize,
+        /// How many may.
+        most: usize,
+    },
     /// A static body cannot move.
     #[error("body {body}: a static body has no {field}, got {value:?}; make it kinematic")]
     StaticMoves {

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done; 1 a run that failed (a state that turned non-finite, a folder that cannot be
 //! written); 2 input that was refused.
 
+mod accuracy;
 mod bench;
 mod determinism;
 mod gate;
@@ -43,6 +44,8 @@ enum Command {
     Bench(bench::Args),
     /// Run the thesis's determinism experiment and compare by bits.
     Determinism(determinism::Args),
+    /// Measure run time against error: every case, integrator, step, precision and lane width.
+    Accuracy(accuracy::Args),
     /// Count instructions of kernels and scenes under valgrind and hold them against those blessed.
     Gate(gate::Args),
     /// Run all experiments into a folder with a page, tables and plots.
@@ -74,6 +77,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Export(args) => recordings::export::main(&args),
         Command::Bench(args) => bench::main(&args),
         Command::Determinism(args) => determinism::main(&args),
+        Command::Accuracy(args) => accuracy::main(&args),
         Command::Gate(args) => gate::main(&args),
         Command::Report(args) => report::main(&args),
     };

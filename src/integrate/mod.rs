@@ -22,6 +22,7 @@
 
 mod explicit_euler;
 mod motion;
+mod plan;
 mod position_verlet;
 mod rk4;
 mod scheme;
@@ -33,12 +34,13 @@ use std::ops::Range;
 
 use crate::body::Bodies;
 use crate::column::Column;
-use crate::force::{Field, Matter, acceleration};
+use crate::force::{Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
-use crate::settings::{Integrator, Skip, Skips};
+use crate::settings::{Integrator, Skip};
 use crate::vec2::{Rot, Vec2};
 
 pub use motion::{Motion, Warm};
+pub use plan::Plan;
 pub use scheme::{Advance, BLOCK, Block, Scheme, Step};
 
 use motion::{Chosen, load_four, store_four};
@@ -98,39 +100,8 @@ pub struct Skipped {
     pub manifolds: u64,
 }
 
-/// How smooth motion is to be advanced.
-#[derive(Clone, Copy, Debug)]
-pub struct Plan<'a, R> {
-    /// The scheme.
-    pub integrator: Integrator,
-    /// The fields present.
-    pub fields: &'a [Field<R>],
-    /// Seconds per substep.
-    pub h_secs: f64,
-    /// Substeps per step.
-    pub substeps: u32,
-    /// Work that may be left out.
-    pub skips: Skips,
-    /// Do the solver's rows hold the moving velocity u = displacement/h (else the velocity)?
-    pub moving: bool,
-    /// Does a substep begin with what contacts changed velocities by in the last?
-    pub carries: bool,
-}
-
-impl<R: Real> Plan<'_, R> {
-    /// What an impulse changes the moving velocity by, over what it changes the velocity by: a half where a
-    /// scheme moves by the mean of old and new velocity, 1 where by the new one.
-    pub fn impulse_share(&self) -> f64 {
-        let by_new = matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
-        if by_new || !self.moving { 1.0 } else { 0.5 }
-    }
-
-    /// Does the scheme collapse to its closed form?
-    pub fn collapses(&self) -> bool {
-        let staged = !matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
-        staged && self.skips.has(Skip::ClosedForm) && self.fields.iter().all(Field::is_constant)
-    }
-}
+/// The widest lanes of a scalar: see [`Plan::couples`].
+type Widest<L> = <<L as Lanes>::Elem as Real>::Widest;
 
 /// Runs `$pass::<L, Scheme>` for the scheme a plan names: the one place where the enum is matched.
 macro_rules! with_scheme {
@@ -156,6 +127,9 @@ pub fn fly<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     mut fast: FastBodies<'_, L::Elem>,
 ) -> Skipped {
+    if plan.couples() && L::WIDTH < <Widest<L> as Lanes>::WIDTH {
+        return fly::<Widest<L>>(plan, bodies, fast);
+    }
     let mut skipped = with_scheme!(plan, fly_with(plan, bodies, &mut fast));
     skipped.closed_form = if plan.collapses() { bodies.live() as u64 } else { 0 };
     skipped
@@ -169,6 +143,9 @@ pub fn predict<L: Lanes>(
     motion: &mut Motion<L::Elem>,
     start: Warm,
 ) -> Skipped {
+    if plan.couples() && L::WIDTH < <Widest<L> as Lanes>::WIDTH {
+        return predict::<Widest<L>>(plan, bodies, motion, start);
+    }
     with_scheme!(plan, predict_with(plan, bodies, motion, start));
     Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, ..Skipped::default() }
 }
@@ -230,9 +207,11 @@ fn fly_with<L: Lanes, S: Scheme>(
         let mut v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
         let matter = matter(bodies, at);
         let mut moved = [Vec2::zero(); BLOCK];
-        for _ in 0..plan.substeps {
+        for substep in 0..plan.substeps {
             let here = std::array::from_fn(|i| x[i] + moved[i]);
-            let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
+            let since = |c: f64| plan.since_secs + plan.h_secs * (f64::from(substep) + c);
+            let next =
+                S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
             moved = std::array::from_fn(|i| moved[i] + next.displacement[i]);
             v = next.velocity;
         }
@@ -348,7 +327,8 @@ fn predict_with<L: Lanes, S: Scheme>(
         let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
         let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
         let matter = Matter { inv_mass, ..matter(bodies, start) };
-        let next = S::advance(step, &here, &v, |x, v| acceleration(plan.fields, matter, x, v));
+        let since = |c: f64| plan.since_secs + plan.h_secs * c;
+        let next = S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
         let alpha = angular_acceleration::<L>(bodies, start);
         for i in 0..BLOCK {
             let at = start + i;

@@ -153,12 +153,15 @@ impl<R: Real> Motion<R> {
 
     /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
     pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
+        if plan.couples() && L::WIDTH < R::Widest::WIDTH {
+            return self.load::<R::Widest>(plan, bodies);
+        }
         for at in starts_in::<L>(&self.runs) {
             let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
             let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
             let w = block::<L>(&bodies.w, at);
             let matter = matter(bodies, at);
-            let pull = acceleration(plan.fields, matter, &x, &v);
+            let pull = acceleration(plan.fields, matter, 0.0, &x, &v);
             let alpha = angular_acceleration::<L>(bodies, at);
             for i in 0..BLOCK {
                 let spin = alpha.map_or(L::zero(), |a| a[i]);

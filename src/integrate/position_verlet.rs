@@ -15,9 +15,9 @@ impl Scheme for PositionVerlet {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
-        let a = accel(&along(x, step.half_h, v), v);
+        let a = accel(&along(x, step.half_h, v), v, 0.5);
         Advance { displacement: drift(step, v, &a), velocity: along(v, step.h, &a) }
     }
 }

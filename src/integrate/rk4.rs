@@ -18,16 +18,16 @@ impl Scheme for Rk4 {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
         let (h, half_h) = (step.h, step.half_h);
-        let k1 = accel(x, v);
+        let k1 = accel(x, v, 0.0);
         let v2 = along(v, half_h, &k1);
-        let k2 = accel(&along(x, half_h, v), &v2);
+        let k2 = accel(&along(x, half_h, v), &v2, 0.5);
         let v3 = along(v, half_h, &k2);
-        let k3 = accel(&along(x, half_h, &v2), &v3);
+        let k3 = accel(&along(x, half_h, &v2), &v3, 0.5);
         let v4 = along(v, h, &k3);
-        let k4 = accel(&along(x, h, &v3), &v4);
+        let k4 = accel(&along(x, h, &v3), &v4, 1.0);
         let (half, third, two_thirds) = (L::lit(0.5), L::lit(1.0 / 3.0), L::lit(2.0 / 3.0));
         let kick: Block<L> = std::array::from_fn(|i| {
             let (ends, middle) = ((k1[i] + k4[i]) * half, (k2[i] + k3[i]) * half);

@@ -40,12 +40,12 @@ pub struct Advance<L> {
 
 /// An integrator: the same signature for every scheme.
 pub trait Scheme {
-    /// Advances (x, v) by one step under `accel(x, v)`.
+    /// Advances (x, v) by one step under `accel(x, v, c)`, whose c is the stage's time in steps since this one began.
     fn advance<L: Lanes>(
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L>;
 
     /// The angle turned and the angular velocity reached under constant angular acceleration.
@@ -66,9 +66,9 @@ impl Scheme for ClosedForm {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
-        let a = accel(x, v);
+        let a = accel(x, v, 0.0);
         Advance { displacement: drift(step, v, &a), velocity: along(v, step.h, &a) }
     }
 }

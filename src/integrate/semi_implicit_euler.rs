@@ -14,9 +14,9 @@ impl Scheme for SemiImplicitEuler {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
-        let a = accel(x, v);
+        let a = accel(x, v, 0.0);
         let velocity = along(v, step.h, &a);
         Advance { displacement: velocity.map(|v| v * step.h), velocity }
     }

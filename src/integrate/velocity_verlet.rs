@@ -15,12 +15,12 @@ impl Scheme for VelocityVerlet {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
-        let a0 = accel(x, v);
+        let a0 = accel(x, v, 0.0);
         let displacement = drift(step, v, &a0);
         let x1: Block<L> = std::array::from_fn(|i| x[i] + displacement[i]);
-        let a1 = accel(&x1, &along(v, step.h, &a0));
+        let a1 = accel(&x1, &along(v, step.h, &a0), 1.0);
         let mean: Block<L> = std::array::from_fn(|i| a0[i] + (a1[i] - a0[i]) * L::lit(0.5));
         Advance { displacement, velocity: along(v, step.h, &mean) }
     }

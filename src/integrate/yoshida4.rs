@@ -23,17 +23,17 @@ impl Scheme for Yoshida4 {
         step: Step<L>,
         x: &Block<L>,
         v: &Block<L>,
-        accel: impl Fn(&Block<L>, &Block<L>) -> Block<L>,
+        accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
         let h = |share: f64| step.h * L::lit(share);
         let x1 = along(x, h(W1 / 2.0), v);
-        let a1 = accel(&x1, v);
+        let a1 = accel(&x1, v, W1 / 2.0);
         let v1 = along(v, h(W1), &a1);
         let x2 = along(&x1, h(f64::midpoint(W1, W0)), &v1);
-        let a2 = accel(&x2, &v1);
+        let a2 = accel(&x2, &v1, 0.5);
         let v2 = along(&v1, h(W0), &a2);
         let x3 = along(&x2, h(f64::midpoint(W1, W0)), &v2);
-        let a3 = accel(&x3, &v2);
+        let a3 = accel(&x3, &v2, 1.0 - W1 / 2.0);
         let weighted = |d2: f64, d3: f64| -> Block<L> {
             std::array::from_fn(|i| a1[i] + ((a2[i] - a1[i]) * L::lit(d2) + (a3[i] - a1[i]) * L::lit(d3)))
         };

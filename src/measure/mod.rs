@@ -1,6 +1,9 @@
 //! What is measured of a world: stage times, counts, energy and momentum, penetration, state hash.
 
 mod case;
+pub mod elliptic;
+pub mod kepler;
+pub mod ode;
 mod overlap;
 mod state;
 

@@ -110,10 +110,33 @@ impl Invariants {
     }
 }
 
+impl Invariants {
+    /// Adds what bodies attract each other with, each a mass, kg, and a centroid, metres.
+    pub fn add_attraction(
+        &mut self,
+        forces: &Forces,
+        bodies: &(impl Iterator<Item = (f64, [f64; 2])> + Clone),
+    ) {
+        if forces.attraction.is_none() {
+            return;
+        }
+        for (k, a) in bodies.clone().enumerate() {
+            for b in bodies.clone().skip(k + 1) {
+                self.potential_energy += forces.pair_energy(a, b);
+            }
+        }
+    }
+}
+
 /// Energy and momentum of a world's dynamic bodies.
 pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
     let mut sum = Invariants::default();
-    for slot in bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO) {
+    let dynamic = bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO);
+    let placed = |slot: usize| {
+        (1.0 / bodies.inv_mass[slot].to_f64(), [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()])
+    };
+    sum.add_attraction(forces, &dynamic.clone().map(placed));
+    for slot in dynamic {
         let read = |column: &Column<R>| column[slot].to_f64();
         let matter = [1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia)];
         let (at, velocity) = ([read(&bodies.x), read(&bodies.y)], [read(&bodies.vx), read(&bodies.vy)]);

@@ -81,8 +81,12 @@ impl Sums {
     /// As [`crate::measure::invariants`], of the numbers taken down.
     fn invariants(&self, slots: usize) -> Invariants {
         let mut sum = Invariants::default();
-        for (at, matter) in self.matter.iter().enumerate().filter_map(|(at, m)| Some((at, (*m)?))) {
-            let read = |column: usize| self.numbers[column * slots + at];
+        let bodies = self.matter.iter().enumerate().filter_map(|(at, m)| Some((at, (*m)?)));
+        let number = |column: usize, at: usize| self.numbers[column * slots + at];
+        let placed = |(at, [mass, _]): (usize, [f64; 2])| (mass, [number(0, at), number(1, at)]);
+        sum.add_attraction(&self.forces, &bodies.clone().map(placed));
+        for (at, matter) in bodies {
+            let read = |column: usize| number(column, at);
             sum.add(matter, [read(0), read(1)], [read(4), read(5)], read(6), &self.forces);
         }
         sum

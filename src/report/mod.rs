@@ -29,6 +29,8 @@ mod timing;
 
 use std::path::Path;
 
+pub(crate) use plots::chart;
+
 pub use data::{Data, EXPERIMENTS, Experiment};
 pub use headline::Headline;
 pub use machine::Machine;

@@ -1,6 +1,6 @@
 //! SVG plots of a report's rows, and its strips of frames.
 
-mod chart;
+pub(crate) mod chart;
 
 use chart::{Series, Slope, bars, heat_map, log_log, stacked};
 

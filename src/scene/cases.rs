@@ -7,20 +7,22 @@
 //! |---|---|---|
 //! | `free_flight` | A1 | x₀ + v₀t + ½gt² |
 //! | `spin` | A16 | θ₀ + ωt |
-//! | `pendulum` | A9 | θ″ = −(g/L) sin θ, integrated here by Runge–Kutta 4 in steps of 10 µs and held to T = 4√(L/g)·K(sin ½θ₀) by a test |
+//! | `pendulum` | A9 | sin ½θ = k·sn(t√(g/L) + K), T = 4√(L/g)·K(k), k = sin ½θ₀ |
 //! | `slide` | B1 | stops after v₀²/2μg |
 //! | `incline` | B3 | ½g(sin θ − μ cos θ)t² |
 //! | `roll` | B4 | ⅓g sin θ·t², angle s/R |
 //! | `slide_to_roll` | B5 | until v₀/3μg slides, then rolls at ⅔v₀ |
 //! | `bounce` | B10 | parabolas, each e times as fast as the last |
 //! | `head_on` | B12 | momentum and Newton's law of restitution |
+//! | `a…` of [`smooth`] | A1 to A16 | beside each |
 //! | `rod_hit` | B14 | J = (1 + e)v / (1/m₁ + 1/m₂ + d²/I) |
 
 use glam::DVec2;
 
 use super::named::scene;
-use super::{BodyKind, BodySpec, Scene, ShapeSpec};
+use super::{BodyKind, BodySpec, Scene, ShapeSpec, smooth};
 use crate::force::Forces;
+use crate::measure::elliptic::pendulum_angle;
 use crate::vec2::Rot;
 
 /// Where a body is.
@@ -35,7 +37,7 @@ pub struct Exact {
 }
 
 /// A case's closed form: one pose per movable body of the scene, after so many seconds.
-type Form = fn(&Scene, f64) -> Vec<Exact>;
+pub(super) type Form = fn(&Scene, f64) -> Vec<Exact>;
 
 const FORMS: &[(&str, Form)] = &[
     ("free_flight", ballistic),
@@ -54,7 +56,7 @@ const FORMS: &[(&str, Form)] = &[
 /// name, so the scene must be as [`super::by_name`] made it.
 pub fn exact(scene: &Scene, t_secs: f64) -> Option<Vec<Exact>> {
     let base = scene.name.split('/').next().unwrap_or_default();
-    let form = FORMS.iter().find(|(name, _)| *name == base)?.1;
+    let form = FORMS.iter().chain(smooth::FORMS).find(|(name, _)| *name == base)?.1;
     Some(form(scene, t_secs))
 }
 
@@ -88,26 +90,11 @@ pub(super) fn spin() -> Scene {
     scene("bars that spin freely", bars.collect(), Forces::default(), 600)
 }
 
-/// Steps of the pendulum's reference, seconds: its error is below 1e-12 rad over 10 s.
-const FINE_SECS: f64 = 1e-5;
-
 fn swing(scene: &Scene, t: f64) -> Vec<Exact> {
     let (pivot, bob) = (DVec2::from(scene.bodies[0].position), DVec2::from(scene.bodies[1].position));
     let arm = bob - pivot;
-    let k = gravity(scene) / arm.length();
-    let steps = (t / FINE_SECS).ceil().max(1.0);
-    let h = t / steps;
     // From the lowest point, counter-clockwise.
-    let (mut angle, mut speed) = (arm.x.atan2(-arm.y), 0.0);
-    for _ in 0..steps as u64 {
-        let rate = |angle: f64| -k * angle.sin();
-        let (a1, s1) = (speed, rate(angle));
-        let (a2, s2) = (speed + 0.5 * h * s1, rate(angle + 0.5 * h * a1));
-        let (a3, s3) = (speed + 0.5 * h * s2, rate(angle + 0.5 * h * a2));
-        let (a4, s4) = (speed + h * s3, rate(angle + h * a3));
-        angle += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
-        speed += h / 6.0 * (s1 + 2.0 * (s2 + s3) + s4);
-    }
+    let angle = pendulum_angle(arm.x.atan2(-arm.y), t * (gravity(scene) / arm.length()).sqrt());
     let at = pivot + arm.length() * DVec2::new(angle.sin(), -angle.cos());
     // The rod ends in the disc's centre: nothing turns it.
     vec![moved(1, &scene.bodies[1], at - bob, 0.0)]

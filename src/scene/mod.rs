@@ -2,7 +2,8 @@
 //!
 //! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
-//! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be.
+//! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be, [`smooth`] holds
+//! those of table A.
 
 pub mod cases;
 mod driven;
@@ -10,6 +11,7 @@ pub mod file;
 pub mod jointed;
 pub mod mixes;
 pub mod named;
+pub mod smooth;
 mod stacks;
 
 use std::path::Path;

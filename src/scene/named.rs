@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{cases, driven, jointed, stacks};
+use super::{cases, driven, jointed, smooth, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -88,11 +88,25 @@ pub struct SceneInfo {
     pub default: usize,
     /// What it shows.
     pub about: &'static str,
-    build: fn(usize, u64) -> Scene,
+    pub(super) build: fn(usize, u64) -> Scene,
 }
 
 /// Every scene of the library.
-pub const SCENES: &[SceneInfo] = &[
+pub const SCENES: &[SceneInfo] = &joined::<{ NAMED.len() + smooth::SCENES.len() }>([NAMED, smooth::SCENES]);
+
+/// Two tables as one.
+const fn joined<const N: usize>(tables: [&[SceneInfo]; 2]) -> [SceneInfo; N] {
+    let mut all = [tables[0][0]; N];
+    let mut k = 0;
+    while k < N {
+        let first = tables[0].len();
+        all[k] = if k < first { tables[0][k] } else { tables[1][k - first] };
+        k += 1;
+    }
+    all
+}
+
+const NAMED: &[SceneInfo] = &[
     SceneInfo {
         name: "circles",
         takes: Takes::Bodies,

@@ -285,7 +285,7 @@ fn constant_gravity_is_exact_or_off_by_half_ght() {
 #[test]
 fn symplectic_methods_keep_the_energy_of_an_orbit() {
     const STEPS_PER_ORBIT: u32 = 500;
-    const ORBITS: u32 = 100;
+    const ORBITS: u32 = 1000;
     for &integrator in Integrator::ALL {
         let mut world = kepler().world(integrator);
         let h = std::f64::consts::TAU / f64::from(STEPS_PER_ORBIT);

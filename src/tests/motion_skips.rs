@@ -8,6 +8,7 @@ use common_motion::{at_every_width, at_widths, disc, every_field, fields, ghosts
 use lamina2d::force::{Central, Forces, Spring};
 use lamina2d::scene::{BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::{Integrator, Precision, Settings, Skip, Skips};
+use lamina2d::simulation::simulate;
 
 const STEPS: usize = 40;
 
@@ -90,6 +91,36 @@ fn free_flight_and_rotation_skips_give_the_bits_of_the_whole_step() {
             }
         }
     }
+}
+
+/// Bodies that attract each other move at once whatever the width, flying or by whole steps; one more is refused.
+#[test]
+fn attraction_gives_the_same_bits_at_every_width_and_with_every_skip() {
+    let forces = Forces { attraction: Some(3.0), ..every_field() };
+    let scene = scene_of(ghosts(15), forces);
+    for settings in every_integrator() {
+        for precision in [Precision::F32, Precision::F64] {
+            let narrow = Settings { precision, lanes: 1, ..settings };
+            let expected = run(&scene, Settings { skips: Skips::NONE, ..narrow }, 10);
+            let apart = run(&scene_of(ghosts(15), every_field()), narrow, 10);
+            assert_ne!(expected.hash(), apart.hash(), "attraction does something");
+            for &lanes in Settings::widths(precision) {
+                for skips in [Skips::ALL, Skips::NONE] {
+                    let got = run(&scene, Settings { skips, lanes, ..narrow }, 10);
+                    assert_eq!(got.hash(), expected.hash(), "{skips} {lanes} lanes: {settings:?}");
+                }
+            }
+        }
+    }
+    let refusal = |bodies: usize, settings| {
+        simulate(&scene_of(ghosts(bodies), forces), settings).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    let at_most = "body 15: force attraction: at most 15 bodies attract each other";
+    assert_eq!(refusal(16, Settings::default()), at_most);
+    let asleep = "force attraction: all bodies must move at once; run it without sleep";
+    assert_eq!(refusal(2, Settings { sleep: true, ..Settings::default() }), asleep);
+    let paced = Settings { max_sag: Some(1e-3), ..Settings::default() };
+    assert_eq!(refusal(2, paced), asleep.replace("sleep", "max-sag"));
 }
 
 /// A swarm that drifts at 20 m/s while its bodies slowly run into each other: the list of pairs is kept nearly all the
@@ -194,6 +225,8 @@ fn bodies_that_touch_nothing_do_not_feel_contacts_elsewhere() {
     let weak = Forces {
         gravity: Some([0.0, -9.81]),
         spring: Some(Spring { anchor: [3.0, 1.0], stiffness: 0.02 }),
+        // It grows with the square of the distance, and the stack stands at 1000 m.
+        henon_heiles: None,
         ..every_field()
     };
     let mut wanderers = ghosts(20);

@@ -148,10 +148,11 @@ fn the_tape_shows_a_body_that_came_while_time_stood_still() -> Outcome {
 
 #[test]
 fn what_cannot_be_done_is_refused_and_changes_nothing() -> Outcome {
-    let scene = scene::by_name("stack/3", None, 1)?;
+    let scene = scene::by_name("stack/30", None, 1)?;
     let mut session = Session::new(&scene, Settings::default())?;
     session.step()?;
     let before = session.world().hash();
+    let attraction = Forces { attraction: Some(1.0), ..Forces::default() };
     let spec = BodySpec::new(ShapeSpec::Circle(-1.0), [0.0; 2]);
     let drag = Forces { linear_drag: Some(-1.0), ..Forces::default() };
     let choose = |substeps| Action::Choose { integrator: Integrator::Rk4, solver: Solver::Soft, substeps };
@@ -164,6 +165,7 @@ fn what_cannot_be_done_is_refused_and_changes_nothing() -> Outcome {
         (pull(2, [f64::NAN, 0.0]), "pull: target is not finite: NaN"),
         (Action::Insert(Box::new(spec)), "radius"),
         (Action::Fields(drag), "linear_drag"),
+        (Action::Fields(attraction), "at most 15 bodies attract each other, got 31"),
         (choose(0), "substeps must be 1 to 1000, got 0"),
         (heavy(-1.0), "mass"),
         (heavy(f64::INFINITY), "mass"),

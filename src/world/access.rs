@@ -3,11 +3,11 @@
 use super::{World, WorldError};
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::contact::{Contact, Manifolds};
-use crate::force::Forces;
+use crate::force::{Forces, MOST_ATTRACTED};
 use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, StageTimes, state_hash};
-use crate::scene::{BodyKind, BodySpec};
+use crate::scene::{BodyKind, BodySpec, SceneError};
 use crate::settings::Settings;
 use crate::solve::Solving;
 
@@ -15,8 +15,12 @@ impl<L: Lanes> World<L> {
     /// Takes a body in. One that is not dynamic wakes all: it may have come where something sleeps.
     ///
     /// # Errors
-    /// Those of [`Bodies::insert`].
+    /// Those of [`Bodies::insert`]; more bodies than may attract each other where they do.
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
+        let body = self.bodies.live();
+        if self.forces.attraction.is_some() && body >= MOST_ATTRACTED {
+            return Err(BodyError::Attracted { body, most: MOST_ATTRACTED });
+        }
         let id = self.bodies.insert(spec)?;
         if spec.kind != BodyKind::Dynamic {
             self.islands.wake_all();
@@ -61,11 +65,12 @@ impl<L: Lanes> World<L> {
         if settings.lanes != L::WIDTH {
             return Err(WorldError::Lanes { have: L::WIDTH, asked: settings.lanes });
         }
+        self.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
-        let (steps, times, fields_set) = (self.steps, self.times, self.fields_set);
+        let (steps, time_secs, times, fields_set) = (self.steps, self.time_secs, self.times, self.fields_set);
         let anew = Self::from_parts(bodies, joints, self.forces, settings)?;
-        *self = Self { steps, times, fields_set, ..anew };
+        *self = Self { steps, time_secs, times, fields_set, ..anew };
         Ok(())
     }
 
@@ -118,6 +123,10 @@ impl<L: Lanes> World<L> {
     /// The fields.
     pub fn forces(&self) -> &Forces {
         &self.forces
+    }
+    /// Seconds since the world began.
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
     }
     /// The settings.
     pub fn settings(&self) -> &Settings {

@@ -117,6 +117,7 @@ impl<L: Lanes> World<L> {
     /// Fields that cannot be run with; nothing has changed then.
     pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
         forces.check_in::<L::Elem>()?;
+        forces.check_coupling(self.bodies.len(), &self.settings)?;
         self.forces = forces;
         self.fields_set += 1;
         self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));

@@ -78,6 +78,7 @@ fn measure(count: usize, integrator: Integrator, repeats: usize) -> anyhow::Resu
         integrator,
         fields: &fields,
         h_secs: 1.0 / 60.0,
+        since_secs: 0.0,
         substeps: 1,
         skips: Skips::ALL,
         moving: false,

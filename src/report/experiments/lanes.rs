@@ -164,6 +164,7 @@ fn advance<L: Lanes<Elem = f32>>(
             integrator,
             fields: &fields,
             h_secs: 1e-3,
+            since_secs: 0.0,
             substeps: 1,
             skips: Skips::NONE,
             moving: false,

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 const SIZE: (u32, u32) = (760, 460);
 /// Distinct for the common kinds of colour blindness (Okabe and Ito, 2008).
-const PALETTE: [RGBColor; 6] = [
+pub(crate) const PALETTE: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -29,13 +29,16 @@ pub(super) struct Series {
     pub(super) points: Vec<(f64, f64)>,
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws into a string; plotters' errors borrow the drawing, so they become text here.
-fn to_svg(draw: impl Fn(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<String> {
+pub(crate) fn to_svg(
+    size: (u32, u32),
+    draw: impl Fn(&Area<'_>) -> anyhow::Result<()>,
+) -> anyhow::Result<String> {
     let mut svg = String::new();
     {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         plot(area.fill(&WHITE))?;
         draw(&area)?;
         plot(area.present())?;
@@ -43,12 +46,12 @@ fn to_svg(draw: impl Fn(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<Stri
     Ok(svg)
 }
 
-fn plot<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
+pub(crate) fn plot<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
     result.map_err(|e| anyhow::anyhow!("plot: {e}"))
 }
 
 /// A range that holds all values, widened a little, for a logarithmic axis.
-fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
+pub(crate) fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     low * 0.7..high * 1.4
 }
@@ -76,7 +79,7 @@ pub(super) fn log_log(
 ) -> anyhow::Result<String> {
     let xs = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.0)));
     let ys = around(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
-    to_svg(|area| {
+    to_svg(SIZE, |area| {
         let mut chart =
             plot(titled(area, title, 70).build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale()))?;
         plot(
@@ -157,7 +160,7 @@ pub(super) fn bars(
     series: &[Series],
 ) -> anyhow::Result<String> {
     let top = series.iter().flat_map(|s| s.points.iter().map(|p| p.1)).fold(0.0, f64::max) * 1.15;
-    to_svg(|area| {
+    to_svg(SIZE, |area| {
         let mut chart = bar_chart(area, title, y_label, labels, top)?;
         let width = 0.8 / series.len() as f64;
         for (k, series) in series.iter().enumerate() {
@@ -191,7 +194,7 @@ pub(super) fn stacked(
     let groups = labels.len();
     let height = |x: usize| series.iter().map(|s| s.points[x].1).sum::<f64>();
     let top = (0..groups).map(height).fold(0.0, f64::max) * 1.3;
-    to_svg(|area| {
+    to_svg(SIZE, |area| {
         let mut chart = bar_chart(area, title, y_label, labels, top)?;
         let mut floor = vec![0.0; groups];
         for (k, series) in series.iter().enumerate() {
@@ -219,7 +222,7 @@ pub(super) fn heat_map(
 ) -> anyhow::Result<String> {
     let all = values.iter().flatten().copied();
     let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-    to_svg(|area| {
+    to_svg(SIZE, |area| {
         let mut chart = plot(
             titled(area, title, 150)
                 .build_cartesian_2d(-0.5..columns.len() as f64 - 0.5, -0.5..rows.len() as f64 - 0.5),

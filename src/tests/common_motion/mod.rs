@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file takes the helpers it needs")]
 
-use lamina2d::force::{Central, Forces, Spring};
+use lamina2d::force::{Central, Drive, Forces, Spring};
 use lamina2d::scene::{BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::{Precision, Settings};
 use lamina2d::simulation::{Simulation, simulate};
@@ -68,6 +68,10 @@ pub(crate) fn every_field() -> Forces {
         spring: Some(Spring { anchor: [3.0, 1.0], stiffness: 0.7 }),
         central: Some(Central { center: [-5.0, 40.0], strength: 30.0 }),
         magnetic: Some(0.4),
+        companion: Some(Central { center: [35.0, -12.0], strength: 20.0 }),
+        henon_heiles: Some(0.01),
+        drive: Some(Drive { amplitude: [0.3, 0.8], rate: 7.0, phase: 0.2 }),
+        attraction: None,
     }
 }
 
@@ -82,6 +86,9 @@ pub(crate) fn fields() -> Vec<(&'static str, Forces)> {
         ("spring", Forces { spring: all.spring, ..none }),
         ("central", Forces { central: all.central, ..none }),
         ("magnetic", Forces { magnetic: all.magnetic, ..none }),
+        ("companion", Forces { companion: all.companion, ..none }),
+        ("Hénon-Heiles", Forces { henon_heiles: all.henon_heiles, ..none }),
+        ("drive", Forces { drive: all.drive, ..none }),
         ("every field", all),
     ]
 }

@@ -10,9 +10,11 @@ use lamina2d::settings::{Integrator, Settings};
 use lamina2d::simulation::simulate;
 
 /// Frames of the recordings made here: the state before the first step is one.
+#[allow(dead_code, reason = "not every test file opens a recording")]
 pub(crate) const FRAMES: usize = 121;
 
 /// Records a scene for so many steps.
+#[allow(dead_code, reason = "not every test file makes one")]
 pub(crate) fn record(folder: &Path, name: &str, scene: &str, integrator: Integrator, steps: u64) -> PathBuf {
     let path = folder.join(name);
     let scene = scene::by_name(scene, None, 1).expect("a scene");
@@ -28,6 +30,7 @@ pub(crate) fn record(folder: &Path, name: &str, scene: &str, integrator: Integra
 }
 
 /// Fifty circles over two seconds.
+#[allow(dead_code, reason = "not every test file opens a recording")]
 pub(crate) fn circles(folder: &Path) -> PathBuf {
     record(folder, "circles.mcap", "circles/50", Integrator::SemiImplicitEuler, FRAMES as u64 - 1)
 }

@@ -1,0 +1,62 @@
+//! The accuracy laboratory: for every case, every integrator and solver, what error does a microsecond buy?
+//!
+//! | file | what |
+//! |---|---|
+//! | [`case`](mod@case) | what a case is: scene, reference, norm, methods, what is expected of each |
+//! | `smooth` | the cases of table A |
+//! | `norm` | the error of a state against its reference |
+//! | [`sweep`] | runs for errors, and others for times: rows |
+//! | `order` | the order a line of errors shows |
+//! | [`best`] | Pareto staircase, fastest at an error, profiles over all cases |
+//! | `plot` | SVG of one case, and of the profiles |
+//! | [`write`](mod@write) | CSV, JSON and SVG into a folder |
+//!
+//! # Method and bias
+//! - Errors come from runs of the scene itself, one at each lane width, which must agree to the bit. They say the same
+//!   digits on every run and machine.
+//! - Times come from other runs: the minimum and the median of windows of whole steps ([`crate::world::World::step`]).
+//!   A scene of one body without joints is timed as a crowd of [`sweep::CROWD`] copies that never meet, side by side
+//!   within a millimetre, and the time divided by them: a single body would show the fixed cost of a step, not that
+//!   of a scheme, and lanes would have nothing to do. The broad phase of the crowd is in it.
+//! - A run that ends in a state that is not finite is a gap: a row without error, drawn nowhere.
+//! - References are closed forms, or order 16 in `f64` at two steps, whose disagreement gives the floor that is drawn; a
+//!   test holds them against a Runge–Kutta method of order 8 by others. Errors less than a hundred times that floor are
+//!   in the rows, but not in the drawing.
+
+pub mod best;
+pub mod case;
+mod norm;
+mod order;
+mod plot;
+mod smooth;
+pub mod sweep;
+pub mod write;
+
+pub use best::{Fastest, Profile};
+pub use case::{Case, Expect, Failing, Method, Norm};
+pub use order::{MIN_HALVINGS, Order, TOLERANCE};
+pub use sweep::{Effort, Observed, Results, Row, measure, observe};
+
+/// Every case that runs.
+pub const CASES: &[Case] = smooth::CASES;
+
+/// What is asked of the engine and cannot run, with the reason.
+pub const FAILING: &[Failing] = smooth::FAILING;
+
+/// The cases of some names, all where there are none, in the order of the table.
+///
+/// # Errors
+/// A name that no case has: the message says which there are, or why that one cannot run.
+pub fn chosen(names: &[String]) -> anyhow::Result<Vec<&'static Case>> {
+    for name in names {
+        if let Some(failing) = FAILING.iter().find(|failing| failing.name == name) {
+            anyhow::bail!("case '{name}' cannot run: {}", failing.reason);
+        }
+        if !CASES.iter().any(|case| case.name == name) {
+            let choices = CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ");
+            anyhow::bail!("unknown case '{name}': one of {choices}");
+        }
+    }
+    let wanted = |case: &&Case| names.is_empty() || names.iter().any(|name| name == case.name);
+    Ok(CASES.iter().filter(wanted).collect())
+}
