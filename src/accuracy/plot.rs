@@ -201,7 +201,7 @@ fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, lines: &[Line<'_>]) -> anyh
     }
     let y = entry_y(lines.len())?;
     plot(area.draw(&PathElement::new([(4, y), (28, y)], BLACK.stroke_width(1))))?;
-    plot(area.draw(&Text::new("not beaten by any run", (36, y - 6), ("sans-serif", 13))))
+    plot(area.draw(&Text::new("not beaten by any run at any width", (36, y - 6), ("sans-serif", 13))))
 }
 
 /// Profiles at one error: the share of cases a method solves within τ times the best time, over τ.
