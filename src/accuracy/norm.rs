@@ -11,6 +11,9 @@ pub(super) fn movable(scene: &Scene) -> impl Iterator<Item = (usize, &BodySpec)>
     scene.bodies.iter().enumerate().filter(|(_, body)| body.kind != BodyKind::Static)
 }
 
+/// A growth beyond this is as good as any: nothing more is to be seen on an axis that goes on to 10¹¹⁹.
+const GROWN: f64 = 1e6;
+
 /// What a run began with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
@@ -49,7 +52,7 @@ impl Norm {
             Self::Momentum => (world.invariants().angular_momentum / start.sums.angular_momentum - 1.0).abs(),
             Self::Apsis => last(world, apsis),
             Self::Length => last(world, |body| (body.position[0].hypot(body.position[1]) - 1.0).abs()),
-            Self::Growth => last(world, |body| body.position[0].abs() / start.reach),
+            Self::Growth => last(world, |body| (body.position[0].abs() / start.reach).min(GROWN)),
         }
     }
 }

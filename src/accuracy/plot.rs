@@ -48,7 +48,7 @@ pub(super) fn case(results: &Results) -> anyhow::Result<Option<String>> {
     if drawn().next().is_none() {
         return Ok(None);
     }
-    let xs = decades(drawn().map(|p| p.0).chain([results.floor.max(LEAST)]));
+    let xs = decades(drawn().map(|p| p.0).chain(Some(results.floor).filter(|floor| *floor > 0.0)));
     let ys = decades(drawn().map(|p| p.1));
     let case = results.case;
     let svg = to_svg(SIZE, |area| {
@@ -131,7 +131,7 @@ fn floors(chart: &mut Chart<'_, '_>, results: &Results, ys: &std::ops::Range<f64
     let single = results.rows.iter().filter(|row| row.precision == "f32").filter_map(|row| row.error);
     let single = single.fold(f64::INFINITY, f64::min);
     let lines = [(single, "f32 floor"), (results.floor, "reference floor")];
-    for (k, (at, name)) in lines.into_iter().filter(|(at, _)| at.is_finite()).enumerate() {
+    for (k, (at, name)) in lines.into_iter().filter(|(at, _)| at.is_finite() && *at > 0.0).enumerate() {
         let at = at.max(LEAST);
         let line = DashedLineSeries::new([(at, ys.start), (at, ys.end)], 5, 4, GREY.stroke_width(1));
         plot(chart.draw_series(line))?;
@@ -201,7 +201,7 @@ fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, lines: &[Line<'_>]) -> anyh
     }
     let y = entry_y(lines.len())?;
     plot(area.draw(&PathElement::new([(4, y), (28, y)], BLACK.stroke_width(1))))?;
-    plot(area.draw(&Text::new("not beaten by any run", (36, y - 6), ("sans-serif", 13))))
+    plot(area.draw(&Text::new("not beaten by any run at any width", (36, y - 6), ("sans-serif", 13))))
 }
 
 /// Profiles at one error: the share of cases a method solves within τ times the best time, over τ.

@@ -79,7 +79,7 @@ pub struct Row {
     pub order: Option<f64>,
     /// What is expected.
     pub target: String,
-    /// Was it met? null where it says nothing of this row's precision.
+    /// Was it met? null where it says nothing of this row's precision, or a quick sweep stops before it could tell.
     pub met: Option<bool>,
     /// Of all windows.
     #[serde(skip)]
@@ -207,6 +207,14 @@ impl Bench {
             }
         }
         Ok(())
+    }
+
+    /// Does the sweep go down to the shortest steps, which expectations speak of?
+    fn is_whole(&self) -> bool {
+        match self.case.sweep {
+            Sweep::Halvings { quick, full, .. } => !self.effort.quick || quick == full,
+            Sweep::Limits { .. } => true,
+        }
     }
 
     fn paces(&self, method: Method) -> Vec<Pace> {
@@ -338,16 +346,20 @@ impl Line<'_> {
         };
         let in_f64 = self.settings.precision == Precision::F64;
         match self.expect {
-            // A quick sweep may be too short to show an order.
-            Expect::Order(_) if !in_f64 || (self.order.is_none() && self.bench.effort.quick) => None,
+            Expect::Order(_) | Expect::AtMost(_) | Expect::AtLeast(_)
+                if !in_f64 || !self.bench.is_whole() =>
+            {
+                None
+            }
             Expect::Order(wanted) => {
                 Some(self.order.is_some_and(|got| (got.order - wanted).abs() <= TOLERANCE))
             }
             Expect::Exact(times) => {
                 Some(error.is_some_and(|error| error <= times * f64::from(pace.steps) * epsilon))
             }
-            Expect::AtMost(most) => in_f64.then(|| finest.is_some_and(|error| error <= most)),
-            Expect::AtLeast(least) => in_f64.then(|| finest.is_none_or(|error| error >= least)),
+            Expect::AtMost(most) => Some(finest.is_some_and(|error| error <= most)),
+            // What has left the numbers is as far off as can be.
+            Expect::AtLeast(least) => Some(finest.is_none_or(|error| error >= least)),
             // A run that left the numbers has grown.
             Expect::Limit if self.grows(pace) => Some(error.is_none_or(|growth| growth > 1.04)),
             Expect::Limit => Some(error.is_some_and(|growth| growth < 30.0)),

@@ -5,8 +5,8 @@
 use lamina2d::force::{Forces, Spring};
 use lamina2d::measure::ode;
 use lamina2d::scene::smooth::{ARENSTORF_PERIOD_SECS, converged};
-use lamina2d::scene::{Scene, by_name};
-use lamina2d::settings::{Integrator, Precision, Settings, Solver};
+use lamina2d::scene::{Scene, by_name, cases};
+use lamina2d::settings::{Integrator, Precision, Settings, Skips, Solver};
 use lamina2d::simulation::{Simulation, simulate};
 
 fn named(name: &str) -> Scene {
@@ -90,6 +90,28 @@ fn energy_of_an_orbit_is_bounded_for_symplectic_methods_and_drifts_for_rk4() {
             _ => assert!(last < 1.05 * first && middle < 1.05 * first, "{integrator}: {largest:?}"),
         }
     }
+}
+
+/// A8: a world that goes on with other settings goes on in the middle of the swing, and substeps see the time they are
+/// at: both keep to the closed form.
+#[test]
+fn a_drive_goes_on_through_substeps_and_a_change_of_settings() {
+    let scene = named("a08_resonance");
+    let mut world = world(&scene, Integrator::Rk4);
+    let mut settings = *world.settings();
+    let mut worst = 0.0f64;
+    for step in 1..=960 {
+        if step % 100 == 0 {
+            settings.substeps = 1 + step / 100 % 4;
+            settings.skips = if step % 200 == 0 { Skips::NONE } else { Skips::ALL };
+            world = world.with_settings(settings).unwrap();
+        }
+        world.step(1.0 / 240.0).unwrap();
+        let exact = cases::exact(&scene, f64::from(step) / 240.0).unwrap()[0].position[0];
+        worst = worst.max((world.states()[0].position[0] - exact).abs());
+    }
+    println!("off by {worst:.1e} m");
+    assert!(worst < 1e-9, "{worst:e}");
 }
 
 /// A14: by the reference, and by RK4 in the engine, the satellite is back where it began with the velocity it had.

@@ -239,7 +239,7 @@ const DISC: &str = "[[body]]\nshape = { circle = 1.0 }\nposition = [0, 0]\n";
 /// Where a file is wrong, the message names the file, the item, the value and what was expected.
 #[test]
 fn bad_scene_files_are_refused_by_item_field_and_value() {
-    let cases: [(&str, &[&str]); 15] = [
+    let cases: [(&str, &[&str]); 20] = [
         ("bodies = 3", &["scene file s.toml", "line 1", "unknown field `bodies`", "expected one of `about`"]),
         ("[settings]\nsubstep = 3", &["line 2", "unknown field `substep`", "`substeps`"]),
         ("[forces]\ngravityy = [0, 1]", &["line 2", "unknown field `gravityy`", "`gravity`"]),
@@ -253,6 +253,14 @@ fn bad_scene_files_are_refused_by_item_field_and_value() {
         ("[forces]\nlinear_drag = -2", &["force linear_drag", "must not be negative", "got -2.0"]),
         ("[forces]\nwind = [1, 0]", &["force wind", "linear_drag or quadratic_drag"]),
         ("[forces]\nspring = { anchor = [0, nan], stiffness = 1 }", &["force spring", "NaN"]),
+        ("[forces]\ncompanion = { center = [0, inf], strength = 1 }", &["force companion", "inf"]),
+        ("[forces]\nhenon_heiles = nan", &["force henon_heiles", "NaN"]),
+        ("[forces]\ndrive = { amplitude = [1, 0], rate = nan }", &["force drive", "NaN"]),
+        (
+            "[forces]\ndrive = { amplitude = [1, 0], rate = 1, delay = 2 }",
+            &["line 2", "unknown field `delay`"],
+        ),
+        ("[forces]\nattraction = nan", &["force attraction", "NaN"]),
         ("[[body]]\nposition = [0, 0]", &["line 1", "missing field `shape`"]),
         (
             "[[body]]\nshape = { circle = 1.0 }\nposition = [0]",

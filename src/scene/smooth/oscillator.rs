@@ -29,7 +29,7 @@ pub(super) fn oscillator_at(scene: &Scene, t: f64) -> Vec<Exact> {
     swings(scene, ANCHOR, 3.0, t)
 }
 
-/// Of [`stiff`], rad/s.
+/// Of the stiff oscillator of A6, rad/s.
 pub const STIFF_RATE: f64 = 1000.0;
 
 /// A6: 1 kg on 10⁶ N/m, ω = 1000 rad/s: what a step must not be too long for.
