@@ -65,7 +65,7 @@ pub enum Action {
         substeps: u32,
     },
     /// Other fields from here on.
-    Fields(Forces),
+    Fields(Box<Forces>),
 }
 
 /// An action and when it was done.
@@ -123,7 +123,7 @@ impl std::fmt::Debug for Session {
         f.debug_struct("Session")
             .field("steps", &self.world.steps())
             .field("events", &self.events.len())
-            .finish()
+            .finish_non_exhaustive()
     }
 }
 
@@ -186,7 +186,7 @@ impl Session {
                 let max_sag = settings.max_sag.filter(|_| solver == Solver::Soft);
                 self.world.set_settings(Settings { integrator, solver, substeps, max_sag, ..settings })?;
             }
-            Action::Fields(forces) => self.world.set_forces(*forces)?,
+            Action::Fields(forces) => self.world.set_forces(**forces)?,
         }
         Ok(None)
     }

@@ -9,6 +9,7 @@
 //! | `order` | the order a line of errors shows |
 //! | [`best`] | Pareto staircase, fastest at an error, profiles over all cases |
 //! | `plot` | SVG of one case, and of the profiles |
+//! | [`tune`](mod@tune) | the cheapest settings for an error |
 //! | [`write`](mod@write) | CSV, JSON and SVG into a folder |
 //!
 //! # Method and bias
@@ -30,6 +31,7 @@ mod order;
 mod plot;
 mod smooth;
 pub mod sweep;
+pub mod tune;
 pub mod write;
 
 pub use best::{Fastest, Profile};

@@ -12,6 +12,7 @@ mod recordings;
 mod report;
 mod run;
 mod scenes;
+mod tune;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -46,6 +47,8 @@ enum Command {
     Determinism(determinism::Args),
     /// Measure run time against error: every case, integrator, step, precision and lane width.
     Accuracy(accuracy::Args),
+    /// Find the cheapest settings that keep a scene's error under a bound.
+    Tune(tune::Args),
     /// Count instructions of kernels and scenes under valgrind and hold them against those blessed.
     Gate(gate::Args),
     /// Run all experiments into a folder with a page, tables and plots.
@@ -78,6 +81,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Bench(args) => bench::main(&args),
         Command::Determinism(args) => determinism::main(&args),
         Command::Accuracy(args) => accuracy::main(&args),
+        Command::Tune(args) => tune::main(&args),
         Command::Gate(args) => gate::main(&args),
         Command::Report(args) => report::main(&args),
     };

@@ -68,9 +68,9 @@ impl<L: Lanes> World<L> {
         self.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
-        let (steps, time_secs, times, fields_set) = (self.steps, self.time_secs, self.times, self.fields_set);
+        let (fields_set, steps, time_secs, times) = (self.fields_set, self.steps, self.time_secs, self.times);
         let anew = Self::from_parts(bodies, joints, self.forces, settings)?;
-        *self = Self { steps, time_secs, times, fields_set, ..anew };
+        *self = Self { fields_set, steps, time_secs, times, ..anew };
         Ok(())
     }
 

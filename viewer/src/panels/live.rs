@@ -104,7 +104,7 @@ fn methods(ui: &mut Ui, viewer: &mut Viewer) {
     }
     if gravity != forces.gravity.unwrap_or_default() {
         let gravity = Some(gravity);
-        viewer.act(|live| live.act(Action::Fields(Forces { gravity, ..forces })));
+        viewer.act(|live| live.act(Action::Fields(Box::new(Forces { gravity, ..forces }))));
     }
     ui.add_space(6.0);
 }
