@@ -1,10 +1,13 @@
 //! What is measured of a world: stage times, counts, energy and momentum, penetration, state hash.
 
 mod case;
+#[cfg(feature = "cli")]
+pub mod chaos;
 pub mod elliptic;
 pub mod kepler;
 pub mod ode;
 mod overlap;
+pub mod residual;
 mod state;
 
 use std::time::{Duration, Instant};
