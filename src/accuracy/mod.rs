@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`case`](mod@case) | what a case is: scene, reference, norm, methods, what is expected of each |
 //! | `smooth` | the cases of table A |
+//! | `line` | what a method did on a case, in a line |
 //! | `norm` | the error of a state against its reference |
 //! | [`sweep`] | runs for errors, and others for times: rows |
 //! | `order` | the order a line of errors shows |
@@ -26,6 +27,7 @@
 
 pub mod best;
 pub mod case;
+mod line;
 mod norm;
 mod order;
 mod plot;
@@ -36,6 +38,7 @@ pub mod write;
 
 pub use best::{Fastest, Profile};
 pub use case::{Case, Expect, Failing, Method, Norm};
+pub use line::{Line, lines};
 pub use order::{MIN_HALVINGS, Order, TOLERANCE};
 pub use sweep::{Effort, Observed, Results, Row, measure, observe};
 

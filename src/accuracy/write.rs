@@ -81,6 +81,14 @@ pub fn case(results: &Results, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Run time against error of a case, as SVG; `None` where no run came to its end.
+///
+/// # Errors
+/// A drawing that cannot be made.
+pub fn drawing(results: &Results) -> anyhow::Result<Option<String>> {
+    plot::case(results)
+}
+
 /// Writes what is said of all cases together: the fastest at each error, and a profile at each.
 ///
 /// # Errors

@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use lamina2d::accuracy::{CASES, Effort, FAILING, Fastest, Results, Row, chosen, measure, write};
+use lamina2d::accuracy::{
+    CASES, Effort, FAILING, Fastest, Line, Results, Row, chosen, lines, measure, write,
+};
+use lamina2d::report::Record;
 use serde_json::{Value, json};
 
 use super::{output, refuse};
@@ -71,14 +74,11 @@ fn list(json: bool) -> anyhow::Result<()> {
 }
 
 fn print(all: &[Results]) -> anyhow::Result<()> {
-    let rows = all.iter().flat_map(orders);
-    output::print_text(&output::table(
-        &["case", "method", "order", "expected", "met", "least error f64", "f32", "ns per step f64", "f32"],
-        rows,
-    ))?;
+    let rows = all.iter().flat_map(lines).map(|line| line.cells());
+    output::print_text(&output::table(Line::HEADER, rows))?;
     output::print_text("\nFastest at an error:")?;
-    let header = ["case", "1e-2", "1e-4", "1e-6"];
-    output::print_text(&output::table(&header, all.iter().map(|results| Fastest::of(results).cells())))?;
+    let fastest = all.iter().map(|results| Fastest::of(results).cells());
+    output::print_text(&output::table(Fastest::HEADER, fastest))?;
     print_failing()
 }
 
@@ -87,43 +87,4 @@ fn print_failing() -> anyhow::Result<()> {
     FAILING
         .iter()
         .try_for_each(|failing| output::print_text(&format!("{}: {}", failing.name, failing.reason)))
-}
-
-/// A line per method: what was observed, expected, and the best of its runs.
-fn orders(results: &Results) -> Vec<Vec<String>> {
-    let mut methods: Vec<&str> = results.rows.iter().map(|row| row.method.as_str()).collect();
-    methods.dedup();
-    let line = |method: &str| {
-        let own = || results.rows.iter().filter(move |row| row.method == method);
-        let least = |of: fn(&Row) -> Option<f64>, precision: &str| {
-            let values = own().filter(|row| row.precision == precision).filter_map(of);
-            let least = values.fold(f64::INFINITY, f64::min);
-            if least.is_finite() { Some(least) } else { None }
-        };
-        let said: Vec<bool> = own().filter_map(|row| row.met).collect();
-        let first = own().next();
-        vec![
-            results.case.name.to_owned(),
-            method.to_owned(),
-            or_dash(first.and_then(|row| row.order).map(|order| format!("{order:.3}"))),
-            first.map_or_else(String::new, |row| row.target.clone()),
-            if said.is_empty() {
-                "–"
-            } else if said.iter().all(|met| *met) {
-                "yes"
-            } else {
-                "no"
-            }
-            .to_owned(),
-            or_dash(least(|row| row.error, "f64").map(|error| format!("{error:.1e}"))),
-            or_dash(least(|row| row.error, "f32").map(|error| format!("{error:.1e}"))),
-            or_dash(least(|row| row.ns_per_step, "f64").map(|ns| format!("{ns:.1}"))),
-            or_dash(least(|row| row.ns_per_step, "f32").map(|ns| format!("{ns:.1}"))),
-        ]
-    };
-    methods.into_iter().map(line).collect()
-}
-
-fn or_dash(text: Option<String>) -> String {
-    text.unwrap_or_else(|| "–".to_owned())
 }

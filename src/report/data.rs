@@ -4,13 +4,15 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::experiments::{
-    broad_phase, contacts, determinism, flight, lanes, limits, matrix, recording, skips, sleep, stability,
+    accuracy, broad_phase, contacts, determinism, flight, lanes, limits, matrix, recording, skips, sleep,
+    stability,
 };
 use super::headline::{Headline, headlines};
 use super::peers::{self, Peers};
 use super::strip::Strip;
 use super::table::{Record, Table};
 use super::{Machine, instructions};
+use crate::accuracy::Line;
 
 /// Everything a report shows.
 #[derive(Clone, Debug, Serialize)]
@@ -33,6 +35,9 @@ pub struct Data {
     pub stability: Vec<stability::Row>,
     /// Piles awake and asleep.
     pub sleep: Vec<sleep::Row>,
+    /// Run time against error of every case.
+    #[serde(skip)]
+    pub accuracy: accuracy::Accuracy,
     /// What recording costs.
     pub recording: Vec<recording::Row>,
     /// Each skip on and off.
@@ -105,6 +110,13 @@ pub const EXPERIMENTS: &[Experiment] = &[
         },
     },
     Experiment {
+        name: Line::NAME,
+        run: |data, _| {
+            data.accuracy = accuracy::run()?;
+            Ok(())
+        },
+    },
+    Experiment {
         name: sleep::Row::NAME,
         run: |data, _| {
             data.sleep = sleep::run(data.quick)?;
@@ -157,6 +169,7 @@ impl Data {
             lanes: Vec::new(),
             contacts: Vec::new(),
             stability: Vec::new(),
+            accuracy: accuracy::Accuracy::default(),
             sleep: Vec::new(),
             skips: Vec::new(),
             flight: Vec::new(),
@@ -209,6 +222,8 @@ impl Data {
             Table::of(&self.stability)?,
             Table::of(&self.peers.as_ref().map(Peers::scenes).unwrap_or_default())?,
             Table::of(self.peers.as_ref().map_or(&[][..], |peers| &peers.rows))?,
+            Table::of(&self.accuracy.lines)?,
+            Table::of(&self.accuracy.fastest)?,
             Table::of(&self.contacts)?,
             Table::of(&self.lanes)?,
             Table::of(&self.skips)?,

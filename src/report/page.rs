@@ -30,6 +30,22 @@ const GROUPS: &[Group] = &[
         tables: &["stability"],
     },
     Group {
+        title: "Accuracy",
+        intro: "What error a microsecond buys: every case with a closed form or a converged reference, every integrator \
+                and step. Down and to the left is better; the line of steps is what no other run beats. At 1e-2 schemes \
+                of order 2 are fastest on most cases, from 1e-4 down Runge and Kutta's on nearly all, and Yoshida's where forces \
+                depend on places alone; f32 ends near 1e-6, whatever the scheme.",
+        plots: &[
+            "accuracy_oscillator.svg",
+            "accuracy_quadratic_drop.svg",
+            "accuracy_kepler.svg",
+            "accuracy_magnetic.svg",
+            "accuracy_pendulum.svg",
+            "accuracy_arenstorf.svg",
+        ],
+        tables: &["fastest", "accuracy"],
+    },
+    Group {
         title: "Peers",
         intro: "Box2D v3 and rapier on the library's own scenes, body for body, in alternating windows of one process; \
                 the same f64 code measures every engine's overlaps and errors.",

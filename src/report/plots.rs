@@ -4,10 +4,11 @@ pub(crate) mod chart;
 
 use chart::{Series, Slope, bars, heat_map, log_log, stacked};
 
-use super::experiments::{broad_phase, contacts, matrix, stability};
+use super::experiments::{accuracy, broad_phase, contacts, matrix, stability};
 use super::peers::{self, Peers};
 use super::strip::Strip;
-use super::{Data, fitted_exponent};
+use super::{Data, Record, fitted_exponent};
+use crate::accuracy::Line;
 use crate::measure::Stage;
 use crate::settings::Solver;
 
@@ -43,7 +44,8 @@ pub(super) fn draw(data: &Data) -> anyhow::Result<Vec<Plot>> {
         (!data.lanes.is_empty(), lanes_speed_up),
     ];
     let drawn = all.into_iter().filter(|(has_rows, _)| *has_rows).map(|(_, draw)| draw(data));
-    drawn.chain(data.strips.iter().map(|strip| Ok(frames(strip)))).collect()
+    let accuracy = data.accuracy.drawings.iter().map(|drawing| Ok(case(drawing)));
+    drawn.chain(accuracy).chain(data.strips.iter().map(|strip| Ok(frames(strip)))).collect()
 }
 
 fn frames(strip: &Strip) -> Plot {
@@ -53,6 +55,16 @@ fn frames(strip: &Strip) -> Plot {
         command: "lamina report",
         replay: Some(strip.replay.clone()),
         svg: strip.svg.clone(),
+    }
+}
+
+fn case(drawing: &accuracy::Drawing) -> Plot {
+    Plot {
+        file: drawing.file,
+        about: drawing.about.clone(),
+        command: Line::COMMAND,
+        replay: None,
+        svg: drawing.svg.clone(),
     }
 }
 

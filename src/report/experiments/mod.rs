@@ -4,6 +4,7 @@
 //! all of them; medians are reported. Every experiment checks what it timed: lane widths must agree on
 //! the state hash, on/off pairs on contacts or hash.
 
+pub mod accuracy;
 pub mod broad_phase;
 pub mod contacts;
 pub mod determinism;
