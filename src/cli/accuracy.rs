@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use lamina2d::accuracy::{CASES, Effort, FAILING, Fastest, Results, Row, chosen, measure, write};
+use lamina2d::accuracy::{CASES, Effort, FAILING, Fastest, Results, Row, chosen, contact, measure, write};
 use serde_json::{Value, json};
 
 use super::{output, refuse};
@@ -39,7 +39,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let bar = output::progress(cases.len() as u64, "accuracy");
     let mut all = Vec::new();
-    for case in cases {
+    for &case in &cases {
         bar.set_message(case.name);
         let results = measure(case, effort)?;
         write::case(&results, &args.out)?;
@@ -51,9 +51,13 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     if args.json {
         let rows: Vec<&Row> = all.iter().flat_map(|results| &results.rows).collect();
         let fastest: Vec<_> = all.iter().map(Fastest::of).collect();
-        return output::print_json(&json!({"rows": rows, "fastest": fastest, "failing": FAILING}));
+        let verdicts = contact::verdicts(&cases)?;
+        return output::print_json(
+            &json!({"rows": rows, "fastest": fastest, "contact": verdicts, "failing": FAILING}),
+        );
     }
     print(&all)?;
+    print_verdicts(&contact::verdicts(&cases)?)?;
     output::print_text(&format!("\nCurves: {}", args.out.display()))
 }
 
@@ -80,6 +84,23 @@ fn print(all: &[Results]) -> anyhow::Result<()> {
     let header = ["case", "1e-2", "1e-4", "1e-6"];
     output::print_text(&output::table(&header, all.iter().map(|results| Fastest::of(results).cells())))?;
     print_failing()
+}
+
+/// Table B at the settings each of its cases names.
+fn print_verdicts(verdicts: &[contact::Verdict]) -> anyhow::Result<()> {
+    if verdicts.is_empty() {
+        return Ok(());
+    }
+    let met = verdicts.iter().filter(|verdict| verdict.met).count();
+    output::print_text(&format!("\nTargets of contact met: {met} of {}", verdicts.len()))?;
+    let number = |value: Option<f64>| or_dash(value.map(|value| format!("{value:.1e}")));
+    let row = |v: &contact::Verdict| {
+        let settings = format!("{} {} h {:.2e}", v.method, v.precision, v.h);
+        let met = if v.met { "yes" } else { "no" }.to_owned();
+        vec![v.case.to_owned(), settings, number(v.error), number(v.target), v.error_unit.to_owned(), met]
+    };
+    let header = ["case", "settings", "error", "target", "unit", "met"];
+    output::print_text(&output::table(&header, verdicts.iter().map(row)))
 }
 
 fn print_failing() -> anyhow::Result<()> {
