@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::contact::Experiment;
 use crate::scene::cases::Exact;
 use crate::scene::{Scene, SceneError, by_name, cases, smooth};
 use crate::settings::{Integrator, Settings, Solver};
@@ -51,6 +52,8 @@ pub enum Expect {
     AtMost(f64),
     /// At least this error with the shortest step: what a test that can tell must see.
     AtLeast(f64),
+    /// At most this error, in each row alone: contact has no order to expect.
+    Target(f64),
     /// Up to the stability limit the amplitude stays, beyond it grows: see [`Sweep::Limits`].
     Limit,
 }
@@ -60,7 +63,7 @@ impl std::fmt::Display for Expect {
         match self {
             Self::Order(order) => write!(f, "order {order}"),
             Self::Exact(_) => write!(f, "exact"),
-            Self::AtMost(error) => write!(f, "<= {error:e}"),
+            Self::AtMost(error) | Self::Target(error) => write!(f, "<= {error:e}"),
             Self::AtLeast(error) => write!(f, ">= {error:e}"),
             Self::Limit => write!(f, "stability limit"),
         }
@@ -68,7 +71,7 @@ impl std::fmt::Display for Expect {
 }
 
 /// What is measured of a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Norm {
     /// Distance from the exact place over this length, metres: the largest of all movable bodies and samples.
     Place(f64),
@@ -84,6 +87,8 @@ pub enum Norm {
     Length,
     /// Largest |x| over the first.
     Growth,
+    /// What the case's own experiment finds.
+    Own(Experiment),
 }
 
 /// Which steps a case is run with.
@@ -163,6 +168,11 @@ impl Case {
     /// Those of [`by_name`]: a table that names a scene there is not.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         by_name(self.scene, None, 1)
+    }
+
+    /// Is it one of table B: about contact?
+    pub fn is_contact(&self) -> bool {
+        matches!(self.norm, Norm::Own(_))
     }
 
     /// The times of its samples, seconds.

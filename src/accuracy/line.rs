@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::best::{Fastest, LEVELS};
+use super::contact::Verdict;
 use super::sweep::{Results, Row};
 use crate::report::Record;
 
@@ -113,5 +114,26 @@ impl Record for Fastest {
         // The header says the levels.
         const { assert!(LEVELS.len() == 3) };
         Fastest::cells(self)
+    }
+}
+
+impl Record for Verdict {
+    const NAME: &'static str = "contact_targets";
+    const TITLE: &'static str = "Contact: what is asked of each case, and what it shows";
+    const COMMAND: &'static str = "lamina accuracy --quick";
+    const NOTE: &'static str = "At default settings or those the case names. Which of the misses comes from what, and where it would \
+                                be mended: docs of `accuracy::contact`.";
+    const HEADER: &'static [&'static str] = &["case", "settings", "error", "target", "unit", "met"];
+
+    fn cells(&self) -> Vec<String> {
+        let number = |value: Option<f64>| or_dash(value.map(|value| format!("{value:.1e}")));
+        vec![
+            self.case.to_owned(),
+            format!("{} {} h {:.2e}", self.method, self.precision, self.h),
+            number(self.error),
+            number(self.target),
+            self.error_unit.to_owned(),
+            if self.met { "yes" } else { "no" }.to_owned(),
+        ]
     }
 }

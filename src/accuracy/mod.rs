@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`case`](mod@case) | what a case is: scene, reference, norm, methods, what is expected of each |
 //! | `smooth` | the cases of table A |
+//! | [`contact`] | the cases of table B |
 //! | `line` | what a method did on a case, in a line |
 //! | `norm` | the error of a state against its reference |
 //! | [`sweep`] | runs for errors, and others for times: rows |
@@ -27,6 +28,7 @@
 
 pub mod best;
 pub mod case;
+pub mod contact;
 mod line;
 mod norm;
 mod order;
@@ -40,13 +42,26 @@ pub use best::{Fastest, Profile};
 pub use case::{Case, Expect, Failing, Method, Norm};
 pub use line::{Line, lines};
 pub use order::{MIN_HALVINGS, Order, TOLERANCE};
-pub use sweep::{Effort, Observed, Results, Row, measure, observe};
+pub use sweep::{Effort, Observed, Results, Row, measure, observe, once};
 
 /// Every case that runs.
-pub const CASES: &[Case] = smooth::CASES;
+pub const CASES: &[Case] =
+    &joined::<_, { smooth::CASES.len() + contact::CASES.len() }>(smooth::CASES, contact::CASES);
 
 /// What is asked of the engine and cannot run, with the reason.
-pub const FAILING: &[Failing] = smooth::FAILING;
+pub const FAILING: &[Failing] =
+    &joined::<_, { smooth::FAILING.len() + contact::FAILING.len() }>(smooth::FAILING, contact::FAILING);
+
+/// Two tables as one.
+const fn joined<T: Copy, const N: usize>(first: &[T], second: &[T]) -> [T; N] {
+    let mut all = [first[0]; N];
+    let mut k = 0;
+    while k < N {
+        all[k] = if k < first.len() { first[k] } else { second[k - first.len()] };
+        k += 1;
+    }
+    all
+}
 
 /// The cases of some names, all where there are none, in the order of the table.
 ///

@@ -52,6 +52,7 @@ impl Norm {
             Self::Momentum => (world.invariants().angular_momentum / start.sums.angular_momentum - 1.0).abs(),
             Self::Apsis => last(world, apsis),
             Self::Length => last(world, |body| (body.position[0].hypot(body.position[1]) - 1.0).abs()),
+            Self::Own(_) => f64::NAN,
             Self::Growth => last(world, |body| (body.position[0].abs() / start.reach).min(GROWN)),
         }
     }

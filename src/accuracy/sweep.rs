@@ -5,13 +5,15 @@ use std::time::Instant;
 use anyhow::ensure;
 use serde::Serialize;
 
-use super::case::{Case, Expect, Method, Reference, Sweep};
+use super::case::{Case, Expect, Method, Norm, Reference, Sweep};
+use super::contact::Trial;
 use super::norm::{Start, movable};
 use super::order::{Order, TOLERANCE};
 use crate::report::median;
 use crate::scene::{BodySpec, Scene, ShapeSpec};
 use crate::settings::{Precision, Settings};
 use crate::simulation::{Simulation, simulate};
+use crate::world::StepError;
 
 /// Copies of a single body that are timed together: a whole number of blocks at every width.
 pub const CROWD: usize = 64;
@@ -122,6 +124,21 @@ pub fn measure(case: &'static Case, effort: Effort) -> anyhow::Result<Results> {
     Ok(Results { case, rows, floor, gate })
 }
 
+/// The error of one run of a contact case at these settings, over so many seconds or the case's own; `None` where it did
+/// not stay finite.
+///
+/// # Errors
+/// A scene that cannot be run, a case that is not one of contact.
+pub fn once(case: &Case, settings: Settings, secs: Option<f64>) -> anyhow::Result<Option<f64>> {
+    let Norm::Own(experiment) = case.norm else { anyhow::bail!("{} is no case of contact", case.name) };
+    let scene = case.scene()?;
+    match experiment(&Trial { scene: &scene, settings, secs: secs.unwrap_or(case.horizon_secs) }) {
+        Ok(error) => Ok(Some(error).filter(|error| error.is_finite())),
+        Err(broken) if broken.is::<StepError>() => Ok(None),
+        Err(other) => Err(other),
+    }
+}
+
 /// What a method showed in `f64`.
 #[derive(Clone, Debug)]
 pub struct Observed {
@@ -188,7 +205,8 @@ impl Bench {
         for precision in [Precision::F64, Precision::F32] {
             let mut errors = Vec::new();
             for (k, lanes) in self.effort.widths(precision).into_iter().enumerate() {
-                let settings = Settings { lanes, precision, continuous: false, ..Settings::default() };
+                let continuous = self.case.is_contact();
+                let settings = Settings { lanes, precision, continuous, ..Settings::default() };
                 let settings = method.settings(settings);
                 let found: Vec<_> =
                     paces.iter().map(|&pace| self.error(settings, pace)).collect::<Result<_, _>>()?;
@@ -247,6 +265,9 @@ impl Bench {
 
     /// The error of a run; `None` where it ended in a state that is not finite.
     fn error(&self, settings: Settings, pace: Pace) -> anyhow::Result<Option<f64>> {
+        if self.case.is_contact() {
+            return once(self.case, Settings { dt_secs: pace.h_secs, ..settings }, None);
+        }
         let mut world = simulate(&self.scene, Settings { dt_secs: pace.h_secs, ..settings })?;
         let (start, norm) = (Start::of(world.as_ref()), self.case.norm);
         let per_sample = pace.steps / self.case.samples;
@@ -357,6 +378,7 @@ impl Line<'_> {
             Expect::Exact(times) => {
                 Some(error.is_some_and(|error| error <= times * f64::from(pace.steps) * epsilon))
             }
+            Expect::Target(most) => Some(error.is_some_and(|error| error <= most)),
             Expect::AtMost(most) => Some(finest.is_some_and(|error| error <= most)),
             // What has left the numbers is as far off as can be.
             Expect::AtLeast(least) => Some(finest.is_none_or(|error| error >= least)),

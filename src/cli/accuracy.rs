@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use lamina2d::accuracy::{
-    CASES, Effort, FAILING, Fastest, Line, Results, Row, chosen, lines, measure, write,
+    CASES, Effort, FAILING, Fastest, Line, Results, Row, chosen, contact, lines, measure, write,
 };
 use lamina2d::report::Record;
 use serde_json::{Value, json};
@@ -42,7 +42,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let bar = output::progress(cases.len() as u64, "accuracy");
     let mut all = Vec::new();
-    for case in cases {
+    for &case in &cases {
         bar.set_message(case.name);
         let results = measure(case, effort)?;
         write::case(&results, &args.out)?;
@@ -54,9 +54,13 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     if args.json {
         let rows: Vec<&Row> = all.iter().flat_map(|results| &results.rows).collect();
         let fastest: Vec<_> = all.iter().map(Fastest::of).collect();
-        return output::print_json(&json!({"rows": rows, "fastest": fastest, "failing": FAILING}));
+        let verdicts = contact::verdicts(&cases)?;
+        return output::print_json(
+            &json!({"rows": rows, "fastest": fastest, "contact": verdicts, "failing": FAILING}),
+        );
     }
     print(&all)?;
+    print_verdicts(&contact::verdicts(&cases)?)?;
     output::print_text(&format!("\nCurves: {}", args.out.display()))
 }
 
@@ -80,6 +84,16 @@ fn print(all: &[Results]) -> anyhow::Result<()> {
     let fastest = all.iter().map(|results| Fastest::of(results).cells());
     output::print_text(&output::table(Fastest::HEADER, fastest))?;
     print_failing()
+}
+
+/// Table B at the settings each of its cases names.
+fn print_verdicts(verdicts: &[contact::Verdict]) -> anyhow::Result<()> {
+    if verdicts.is_empty() {
+        return Ok(());
+    }
+    let met = verdicts.iter().filter(|verdict| verdict.met).count();
+    output::print_text(&format!("\nTargets of contact met: {met} of {}", verdicts.len()))?;
+    output::print_text(&output::table(contact::Verdict::HEADER, verdicts.iter().map(Record::cells)))
 }
 
 fn print_failing() -> anyhow::Result<()> {

@@ -223,6 +223,7 @@ impl Data {
             Table::of(&self.peers.as_ref().map(Peers::scenes).unwrap_or_default())?,
             Table::of(self.peers.as_ref().map_or(&[][..], |peers| &peers.rows))?,
             Table::of(&self.accuracy.lines)?,
+            Table::of(&self.accuracy.contact)?,
             Table::of(&self.accuracy.fastest)?,
             Table::of(&self.contacts)?,
             Table::of(&self.lanes)?,

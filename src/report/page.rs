@@ -43,7 +43,7 @@ const GROUPS: &[Group] = &[
             "accuracy_pendulum.svg",
             "accuracy_arenstorf.svg",
         ],
-        tables: &["fastest", "accuracy"],
+        tables: &["fastest", "contact_targets", "accuracy"],
     },
     Group {
         title: "Peers",

@@ -15,12 +15,13 @@
 //! | `bounce` | B10 | parabolas, each e times as fast as the last |
 //! | `head_on` | B12 | momentum and Newton's law of restitution |
 //! | `a…` of [`smooth`] | A1 to A16 | beside each |
+//! | `b…` of [`contact`] | B1 to B31 | beside each |
 //! | `rod_hit` | B14 | J = (1 + e)v / (1/m₁ + 1/m₂ + d²/I) |
 
 use glam::DVec2;
 
 use super::named::scene;
-use super::{BodyKind, BodySpec, Scene, ShapeSpec, smooth};
+use super::{BodyKind, BodySpec, Scene, ShapeSpec, contact, smooth};
 use crate::force::Forces;
 use crate::measure::elliptic::pendulum_angle;
 use crate::vec2::Rot;
@@ -56,12 +57,12 @@ const FORMS: &[(&str, Form)] = &[
 /// name, so the scene must be as [`super::by_name`] made it.
 pub fn exact(scene: &Scene, t_secs: f64) -> Option<Vec<Exact>> {
     let base = scene.name.split('/').next().unwrap_or_default();
-    let form = FORMS.iter().chain(smooth::FORMS).find(|(name, _)| *name == base)?.1;
+    let form = FORMS.iter().chain(smooth::FORMS).chain(contact::FORMS).find(|(name, _)| *name == base)?.1;
     Some(form(scene, t_secs))
 }
 
 /// m/s², downward.
-fn gravity(scene: &Scene) -> f64 {
+pub(super) fn gravity(scene: &Scene) -> f64 {
     scene.forces.gravity.map_or(0.0, |g| -g[1])
 }
 
@@ -70,7 +71,7 @@ fn movable(scene: &Scene) -> impl Iterator<Item = (usize, &BodySpec)> {
 }
 
 /// A pose `along` an axis of the body's beginning.
-fn moved(body: usize, spec: &BodySpec, by: DVec2, turn: f64) -> Exact {
+pub(super) fn moved(body: usize, spec: &BodySpec, by: DVec2, turn: f64) -> Exact {
     Exact { body, position: (DVec2::from(spec.position) + by).to_array(), angle: spec.angle + turn }
 }
 
@@ -101,7 +102,7 @@ fn swing(scene: &Scene, t: f64) -> Vec<Exact> {
 }
 
 /// A static floor with its top at height 0.
-fn floor(friction: f64, restitution: f64) -> BodySpec {
+pub(super) fn floor(friction: f64, restitution: f64) -> BodySpec {
     BodySpec::new(ShapeSpec::Box([50.0, 0.5]), [0.0, -0.5]).surface(restitution, friction).fixed()
 }
 
@@ -112,7 +113,7 @@ pub(super) fn slide() -> Scene {
     scene("a block slides to a stop", vec![floor(0.5, 0.0), block], Forces::gravity(), 120)
 }
 
-fn slide_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn slide_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let block = &scene.bodies[1];
     let slowing = block.friction * gravity(scene);
     let t = t.min(block.velocity[0] / slowing);
@@ -121,7 +122,14 @@ fn slide_at(scene: &Scene, t: f64) -> Vec<Exact> {
 
 /// A body on a slope of `angle` rad: bodies are the slope, whose surface passes through the origin, and the body, which
 /// touches it there from above, `height` metres from its centre.
-fn on_slope(about: &str, shape: ShapeSpec, height: f64, angle: f64, friction: f64, steps: u64) -> Scene {
+pub(super) fn on_slope(
+    about: &str,
+    shape: ShapeSpec,
+    height: f64,
+    angle: f64,
+    friction: f64,
+    steps: u64,
+) -> Scene {
     let rot = Rot::from_angle(angle);
     let normal = DVec2::new(-rot.s, rot.c);
     let slope = BodySpec::new(ShapeSpec::Box([60.0, 0.5]), (normal * -0.5).to_array());
@@ -138,12 +146,12 @@ pub(super) fn incline() -> Scene {
 }
 
 /// Down the slope that body 0 is, per metre of way.
-fn downhill(scene: &Scene) -> (Rot<f64>, DVec2) {
+pub(super) fn downhill(scene: &Scene) -> (Rot<f64>, DVec2) {
     let rot = Rot::from_angle(scene.bodies[0].angle);
     (rot, DVec2::new(-rot.c, -rot.s))
 }
 
-fn incline_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn incline_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let (rot, down) = downhill(scene);
     let block = &scene.bodies[1];
     let way = 0.5 * gravity(scene) * (rot.s - block.friction * rot.c) * t * t;
@@ -156,11 +164,11 @@ pub(super) fn roll() -> Scene {
     on_slope(about, ShapeSpec::Circle(0.5), 0.5, angle, 0.5, 180)
 }
 
-fn radius(spec: &BodySpec) -> f64 {
+pub(crate) fn radius(spec: &BodySpec) -> f64 {
     spec.shape.build().map_or(f64::NAN, |shape| shape.bounding_radius())
 }
 
-fn roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let (rot, down) = downhill(scene);
     let disc = &scene.bodies[1];
     let way = gravity(scene) * rot.s / 3.0 * t * t;
@@ -174,7 +182,7 @@ pub(super) fn slide_to_roll() -> Scene {
     scene("a disc slides until it rolls", vec![floor(0.3, 0.0), disc], Forces::gravity(), 120)
 }
 
-fn slide_to_roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn slide_to_roll_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let disc = &scene.bodies[1];
     let (v, slowing) = (disc.velocity[0], disc.friction * gravity(scene));
     let sliding = t.min(v / (3.0 * slowing));
@@ -191,7 +199,7 @@ pub(super) fn bounce() -> Scene {
     scene("a disc bounces", vec![floor(0.0, 0.8), disc], Forces::gravity(), 240)
 }
 
-fn bounce_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn bounce_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let disc = &scene.bodies[1];
     let (g, drop) = (gravity(scene), disc.position[1] - radius(disc));
     let first = (2.0 * drop / g).sqrt();
@@ -218,7 +226,7 @@ fn half_width(spec: &BodySpec) -> f64 {
     }
 }
 
-fn mass(spec: &BodySpec) -> f64 {
+pub(super) fn mass(spec: &BodySpec) -> f64 {
     spec.mass.unwrap_or(f64::NAN)
 }
 
@@ -248,7 +256,7 @@ pub(super) fn rod_hit() -> Scene {
     scene("a disc hits a free rod off its middle", vec![disc, rod], Forces::default(), 60)
 }
 
-fn rod_hit_at(scene: &Scene, t: f64) -> Vec<Exact> {
+pub(super) fn rod_hit_at(scene: &Scene, t: f64) -> Vec<Exact> {
     let (disc, rod) = (&scene.bodies[0], &scene.bodies[1]);
     let [half_x, half_y] = match rod.shape {
         ShapeSpec::Box(half) => half,

@@ -3,14 +3,16 @@
 //! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
 //! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be, [`smooth`] holds
-//! those of table A.
+//! those of table A, [`contact`] those of table B.
 
 pub mod cases;
+pub mod contact;
 mod driven;
 pub mod file;
 pub mod jointed;
 pub mod mixes;
 pub mod named;
+pub mod similar;
 pub mod smooth;
 mod stacks;
 

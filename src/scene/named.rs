@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{cases, driven, jointed, smooth, stacks};
+use super::{cases, contact, driven, jointed, smooth, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -92,15 +92,22 @@ pub struct SceneInfo {
 }
 
 /// Every scene of the library.
-pub const SCENES: &[SceneInfo] = &joined::<{ NAMED.len() + smooth::SCENES.len() }>([NAMED, smooth::SCENES]);
+pub const SCENES: &[SceneInfo] = &joined::<{ NAMED.len() + smooth::SCENES.len() + contact::SCENES.len() }>([
+    NAMED,
+    smooth::SCENES,
+    contact::SCENES,
+]);
 
-/// Two tables as one.
-const fn joined<const N: usize>(tables: [&[SceneInfo]; 2]) -> [SceneInfo; N] {
+/// Three tables as one.
+const fn joined<const N: usize>(tables: [&[SceneInfo]; 3]) -> [SceneInfo; N] {
     let mut all = [tables[0][0]; N];
-    let mut k = 0;
+    let (mut table, mut before, mut k) = (0, 0, 0);
     while k < N {
-        let first = tables[0].len();
-        all[k] = if k < first { tables[0][k] } else { tables[1][k - first] };
+        if k - before == tables[table].len() {
+            before = k;
+            table += 1;
+        }
+        all[k] = tables[table][k - before];
         k += 1;
     }
     all

@@ -38,7 +38,7 @@ macro_rules! cells {
         #[test]
         fn every_case_is_held() {
             let held = [$(stringify!($name)),+];
-            for case in CASES {
+            for case in CASES.iter().filter(|case| !case.is_contact()) {
                 assert!(held.contains(&case.name), "{} has no test", case.name);
             }
         }

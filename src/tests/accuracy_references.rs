@@ -101,7 +101,7 @@ fn references_of_henon_and_heiles_agree() {
 /// the scene's bodies are.
 #[test]
 fn every_case_has_one_reference_that_begins_with_its_scene() {
-    for case in CASES {
+    for case in CASES.iter().filter(|case| !case.is_contact()) {
         let scene = case.scene().unwrap();
         let start: Option<Vec<[f64; 2]>> =
             cases::exact(&scene, 0.0).map(|all| all.iter().map(|exact| exact.position).collect());

@@ -1,5 +1,6 @@
 //! The accuracy laboratory in a quick sweep: what a report shows of it.
 
+use crate::accuracy::contact::{self, Verdict};
 use crate::accuracy::{CASES, Effort, Fastest, Line, Results, lines, measure, write};
 
 /// Drawings a report has room for: cases and their files.
@@ -28,6 +29,8 @@ pub struct Drawing {
 pub struct Accuracy {
     /// A line per case and method.
     pub lines: Vec<Line>,
+    /// What is asked of contact, and what it shows.
+    pub contact: Vec<Verdict>,
     /// A line per case.
     pub fastest: Vec<Fastest>,
     /// Drawings of some cases.
@@ -46,6 +49,7 @@ pub fn run() -> anyhow::Result<Accuracy> {
         accuracy.fastest.push(Fastest::of(&results));
         accuracy.drawings.extend(draw(&results)?);
     }
+    accuracy.contact = contact::verdicts(&CASES.iter().collect::<Vec<_>>())?;
     Ok(accuracy)
 }
 
