@@ -217,7 +217,7 @@ impl Forces {
         }
     }
 
-    /// The fields present, rounded to the engine's precision, constant ones first.
+    /// The fields present, rounded to the engine's precision: constant ones first, those few scenes have last.
     pub fn fields<R: Real>(&self) -> Vec<Field<R>> {
         let pair = |v: [f64; 2]| v.map(R::from_f64);
         let wind = pair(self.wind.unwrap_or_default());

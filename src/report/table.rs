@@ -64,22 +64,46 @@ impl Table {
         })
     }
 
-    /// The raw rows as CSV; nested fields become columns `outer_inner`.
+    /// The raw rows as CSV; nested fields become columns `outer_inner`, empty in the rows that lack them.
     ///
     /// # Errors
     /// Those of the writer.
     pub fn write_csv(&self, to: impl std::io::Write) -> anyhow::Result<()> {
+        let rows: Vec<_> = self.raw.iter().map(cells_of).collect();
+        let header = header_of(&rows);
         let mut writer = csv::Writer::from_writer(to);
-        for (k, row) in self.raw.iter().enumerate() {
-            let mut cells = Vec::new();
-            flatten("", row, &mut cells);
-            if k == 0 {
-                writer.write_record(cells.iter().map(|c| &c.0))?;
-            }
-            writer.write_record(cells.iter().map(|c| &c.1))?;
+        writer.write_record(&header)?;
+        for row in &rows {
+            let cell = |key: &&str| row.iter().find(|(k, _)| k == key).map_or("", |(_, cell)| cell);
+            writer.write_record(header.iter().map(cell))?;
         }
         Ok(writer.flush()?)
     }
+}
+
+/// A row's cells, each with its column.
+fn cells_of(row: &Value) -> Vec<(String, String)> {
+    let mut cells = Vec::new();
+    flatten("", row, &mut cells);
+    cells
+}
+
+/// All columns of some rows; one that the first row lacks stands behind the one it follows where it first occurs.
+fn header_of(rows: &[Vec<(String, String)>]) -> Vec<&str> {
+    let mut header: Vec<&str> = Vec::new();
+    for row in rows {
+        let mut at = 0;
+        for (key, _) in row {
+            match header.iter().position(|known| known == key) {
+                Some(known) => at = known + 1,
+                None => {
+                    header.insert(at, key);
+                    at += 1;
+                }
+            }
+        }
+    }
+    header
 }
 
 fn flatten(key: &str, value: &Value, cells: &mut Vec<(String, String)>) {
@@ -108,4 +132,23 @@ pub(super) fn or_dash(value: Option<impl ToString>) -> String {
 /// yes or no.
 pub(super) fn yes_no(yes: bool) -> String {
     if yes { "yes" } else { "no" }.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_lack_columns_leave_their_cells_empty() {
+        let raw = serde_json::from_str(
+            r#"[{"a": 1, "best": null, "z": true}, {"a": 2, "best": {"h": 0.5, "name": "x,y"}, "z": false}]"#,
+        );
+        let raw = raw.expect("JSON");
+        let table =
+            Table { name: "t", title: "", command: "", note: "", header: &[], lines: Vec::new(), raw };
+        let mut csv = Vec::new();
+        table.write_csv(&mut csv).expect("a vector takes all");
+        let text = String::from_utf8(csv).expect("UTF-8");
+        assert_eq!(text, "a,best,best_h,best_name,z\n1,,,,true\n2,,0.5,\"x,y\",false\n");
+    }
 }
