@@ -149,6 +149,6 @@ mod tests {
         let mut csv = Vec::new();
         table.write_csv(&mut csv).expect("a vector takes all");
         let text = String::from_utf8(csv).expect("UTF-8");
-        assert_eq!(text, "a,best,best_h,best_name,z\n1,,,,true\n2,,0.5,\"x,y\",false\n");
+        assert_eq!(text, "a,best_h,best_name,best,z\n1,,,,true\n2,0.5,\"x,y\",,false\n");
     }
 }
