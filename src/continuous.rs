@@ -20,8 +20,10 @@
 //! The next step must find the contact. Solvers that hear of gaps get a body half a skin away, where they stop it
 //! without letting it sink; one that hears of overlaps alone gets it one skin deep. A pair that is nearer than two
 //! skins (or overlaps) as the step begins is left to the solver, but for its core, a disc of half the inner radius,
-//! which never gets in: a plate that has come down on a corner would turn about it and through. The skin is a thousandth of the scene's
-//! median radius, at most a fiftieth of the body's core, at least what a coordinate is rounded by.
+//! which never gets in: a plate that has come down on a corner would turn about it and through. A body whose contact
+//! has stopped it, or whose way ends before the wall, is left where it is, however near that is: stopped half a skin
+//! early, a billiard ball lost 20 µs. The skin is a thousandth of the scene's median radius, at most a fiftieth of the
+//! body's core, at least what a coordinate is rounded by.
 //!
 //! # What a pair costs
 //! Fast bodies are tested against each obstacle's bounding circle first, one after the other: their product is
@@ -141,6 +143,8 @@ struct Reach {
     target: f64,
     /// What a search may miss the target by.
     tolerance: f64,
+    /// Bodies that end their way no nearer than this go it to its end.
+    clear: f64,
     /// Radius of the disc about the centroid that never gets in, metres.
     core: f64,
 }
@@ -150,12 +154,14 @@ impl Reach {
         let coordinate = sweep.x.abs().max_element() + sweep.moved.abs().max_element();
         let skin = skin_m.min(core / 50.0).max(16.0 * epsilon.to_f64() * coordinate);
         let (touching, target) = if hears_of_gaps { (2.0 * skin, 0.5 * skin) } else { (0.0, -skin) };
-        Self { touching, target, tolerance: 0.25 * skin, core }
+        let tolerance = 0.25 * skin;
+        Self { touching, target, tolerance, clear: target.min(-tolerance), core }
     }
 
     /// For the core: no contact knows of it, so it is stopped however near it begins.
     fn of_core(self) -> Self {
-        Self { touching: 0.0, target: 2.0 * self.tolerance, ..self }
+        let target = 2.0 * self.tolerance;
+        Self { touching: 0.0, target, clear: target, ..self }
     }
 }
 
@@ -297,8 +303,7 @@ impl Wall {
         let spin = body.spin_speed() + self.sweep.spin_speed();
         self.faces[..self.sweep.count].iter().any(|&(normal, extent)| {
             let apart = normal.dot(from) - extent - body.radius;
-            let spare = apart - reach.target;
-            apart > reach.touching && spare > 0.0 && spare >= spin - normal.dot(way)
+            apart > reach.touching && apart - reach.clear >= spin - normal.dot(way)
         })
     }
 }
@@ -373,11 +378,12 @@ fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
     for _ in 0..ADVANCES {
         let (placed_a, placed_b) = (a.at(t), b.at(t));
         let to_b = placed_b.centre - placed_a.centre;
-        let (mut separation, mut wait) = (f64::MIN, 0.0f64);
+        let (mut separation, mut wait, mut clear) = (f64::MIN, 0.0f64, false);
         let mut along = |axis: DVec2| {
             let apart = axis.dot(to_b) - placed_a.extent(axis) - placed_b.extent(-axis);
             separation = separation.max(apart);
             let closing = spin - axis.dot(velocity);
+            clear |= apart > reach.touching && apart - reach.clear >= closing * (1.0 - t);
             let spare = apart - reach.target;
             if spare > 0.0 {
                 wait = wait.max(if closing > 0.0 { spare / closing } else { f64::INFINITY });
@@ -393,7 +399,7 @@ fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
         if t == 0.0 && separation <= reach.touching {
             return Approach::Touching;
         }
-        if wait == f64::INFINITY {
+        if wait == f64::INFINITY || clear {
             return Approach::Passes;
         }
         if separation <= reach.target + reach.tolerance {

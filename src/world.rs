@@ -340,7 +340,7 @@ impl<L: Lanes> World<L> {
             }
         }
         let (motion, solving) = (&mut self.motion, &mut self.solving);
-        solving.end(task, &self.narrow.manifolds, motion);
+        solving.end(task, &mut self.narrow.manifolds, motion);
         solving.end_joints(&mut self.joints);
         self.times.lap(Stage::Solve, clock);
         (skipped, finite)

@@ -94,13 +94,12 @@ fn header_of(rows: &[Vec<(String, String)>]) -> Vec<&str> {
     for row in rows {
         let mut at = 0;
         for (key, _) in row {
-            match header.iter().position(|known| known == key) {
-                Some(known) => at = known + 1,
-                None => {
-                    header.insert(at, key);
-                    at += 1;
-                }
+            if let Some(known) = header.iter().position(|known| known == key) {
+                at = known;
+            } else {
+                header.insert(at, key);
             }
+            at += 1;
         }
     }
     header

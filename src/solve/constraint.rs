@@ -132,7 +132,16 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             let half = L::select(parts.two_points, L::lit(0.5), zero);
             arms[0] + (arms[1] - arms[0]) * half
         };
-        let tangent_levers = levers(middle, tangent);
+        // A gap's point lies midway: once closed, each body is rubbed at its own surface.
+        let [first, second] = [parts.gap[0], parts.gap[1]];
+        let gap = if POINTS == 1 {
+            first
+        } else {
+            first + L::select(parts.two_points, second - first, zero) * L::lit(0.5)
+        };
+        let half_gap = zero.max(gap) * L::lit(0.5);
+        let [to_a, to_b] = levers(middle, tangent);
+        let tangent_levers = [to_a - half_gap, to_b + half_gap];
         Self {
             normal,
             inv_inertia: [ia, ib],
@@ -145,8 +154,8 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         }
     }
 
-    /// Puts back what lanes without a bit in `fresh` held: from an impulse it would come back rounded, and which
-    /// lanes share a batch must not matter.
+    /// Puts back what lanes without a bit in `fresh` held, which would come back rounded from an impulse, and the levers
+    /// of their tangents, which today's gap would move: which lanes share a batch must not matter.
     pub fn keep_held(&mut self, old: &Self, fresh: u32) {
         let lanes: [L::Elem; 16] =
             std::array::from_fn(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
@@ -154,6 +163,10 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         for (point, old) in self.points.iter_mut().zip(&old.points) {
             point.held = L::select(fresh, point.held, old.held);
         }
+        for (lever, old) in self.tangent_levers.iter_mut().zip(old.tangent_levers) {
+            *lever = L::select(fresh, *lever, old);
+        }
+        self.tangent_mass = L::select(fresh, self.tangent_mass, old.tangent_mass);
     }
 
     /// The tangent: the normal turned a quarter counter-clockwise.
@@ -198,23 +211,28 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     /// Friction: what stops sliding, within the cone of the normal impulses.
     #[inline(always)]
     pub fn solve_friction(&mut self, a: &mut Side<L>, b: &mut Side<L>) {
-        let tangent = self.tangent();
-        let [la, lb] = self.tangent_levers;
-        let sliding = (b.velocity - a.velocity).dot(tangent) + (b.spin * lb - a.spin * la);
         let mut load = self.points[0].impulse();
         for point in &self.points[1..] {
             load = load + point.impulse();
         }
+        self.tangent_impulse = self.rub_within(a, b, self.tangent_impulse, load);
+    }
+
+    /// Changes a friction impulse to the one that stops sliding, within the cone of a normal one; returns the new one.
+    #[inline(always)]
+    pub(super) fn rub_within(&self, a: &mut Side<L>, b: &mut Side<L>, held: L, load: L) -> L {
+        let tangent = self.tangent();
+        let [la, lb] = self.tangent_levers;
+        let sliding = (b.velocity - a.velocity).dot(tangent) + (b.spin * lb - a.spin * la);
         let bound = self.friction * load;
-        let held = self.tangent_impulse;
         let next = (-bound).max(bound.min(held - sliding * self.tangent_mass));
-        self.tangent_impulse = next;
         self.rub(a, b, next - held);
+        next
     }
 
     /// A tangential impulse at the middle of the points.
     #[inline(always)]
-    fn rub(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: L) {
+    pub(super) fn rub(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: L) {
         let tangent = self.tangent();
         let [la, lb] = self.tangent_levers;
         a.velocity = a.velocity - tangent * (impulse * a.inv_mass);

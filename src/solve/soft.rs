@@ -17,7 +17,7 @@
 use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
-use crate::lanes::{LaneMask, Lanes};
+use crate::lanes::Lanes;
 
 /// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
 ///
@@ -135,110 +135,6 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Relax<'_, L, FRICTION> {
         normals.end(c, &mut a, &mut b);
         if FRICTION {
             c.solve_friction(&mut a, &mut b);
-        }
-        a.scatter(self.rows, ends.a);
-        b.scatter(self.rows, ends.b);
-    }
-}
-
-/// Approaches noted at a step's beginning, per batch and point, for the bounce at its end.
-#[derive(Clone, Debug)]
-pub struct Bounces<L> {
-    two: Vec<[L; 2]>,
-    one: Vec<[L; 1]>,
-}
-
-impl<L> Default for Bounces<L> {
-    fn default() -> Self {
-        Self { two: Vec::new(), one: Vec::new() }
-    }
-}
-
-impl<L: Lanes> Bounces<L> {
-    /// Makes room for so many batches.
-    pub fn resize(&mut self, [two, one]: [usize; 2]) {
-        self.two.resize(two, [L::zero(); 2]);
-        self.one.resize(one, [L::zero(); 1]);
-    }
-
-    #[inline(always)]
-    fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [L] {
-        if POINTS == 2 { &mut self.two[at] } else { &mut self.one[at] }
-    }
-}
-
-/// Notes for each point that carried nothing in the last step how fast it will part: e times the speed at which
-/// its gap will have closed, √(v² + 2a·s), if its approach is faster than the threshold.
-#[derive(Debug)]
-pub struct NoteApproach<'a, L: Lanes> {
-    /// Velocities at the step's beginning per slot.
-    pub rows: &'a [[L::Elem; 4]],
-    /// Accelerations at the step's beginning per slot: x, y (m/s²), angular.
-    pub accelerations: &'a [[L::Elem; 4]],
-    /// Slower approaches do not bounce, m/s.
-    pub threshold: L,
-    /// Where to.
-    pub bounces: &'a mut Bounces<L>,
-}
-
-impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
-    #[inline(always)]
-    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
-        let sides = |rows: &[[L::Elem; 4]]| (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
-        let (a, b) = sides(self.rows);
-        let (pull_a, pull_b) = sides(self.accelerations);
-        let (speeds, pulls) = (Normals::begin(c, &a, &b), Normals::begin(c, &pull_a, &pull_b));
-        let zero = L::zero();
-        let wanted = self.bounces.at::<POINTS>(at);
-        for (point, wanted) in c.points.iter().zip(wanted) {
-            let speed = speeds.velocity(point);
-            let square = speed * speed - L::lit(2.0) * (pulls.velocity(point) * point.separation);
-            let bounces = speed.lt(-self.threshold) & point.held.le(zero) & zero.lt(point.mass);
-            *wanted = L::select(bounces, c.restitution * zero.max(square).sqrt(), zero);
-        }
-    }
-}
-
-/// The pass that ends a step: points that bounce and touched part with the speed noted.
-#[derive(Debug)]
-pub struct Bounce<'a, L: Lanes> {
-    /// Velocities per slot.
-    pub rows: &'a mut [[L::Elem; 4]],
-    /// Gaps up to this count as touched, metres.
-    pub touch: L,
-    /// Displacement of the last substep per slot; `None` where gaps are up to date.
-    pub moved: Option<&'a [[L::Elem; 4]]>,
-    /// What was noted.
-    pub bounces: &'a mut Bounces<L>,
-}
-
-impl<L: Lanes> Visit<L> for Bounce<'_, L> {
-    #[inline(always)]
-    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
-        let wanted = self.bounces.at::<POINTS>(at);
-        let zero = L::zero();
-        if !wanted.iter().any(|speed| zero.lt(*speed).any()) {
-            return;
-        }
-        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
-        let change = self.moved.map_or([zero; POINTS], |moved| {
-            c.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
-        });
-        let mut given = [zero; POINTS];
-        // Two points push against each other: once more settles their shares.
-        for _ in 0..POINTS {
-            let mut normals = Normals::begin(c, &a, &b);
-            for k in 0..POINTS {
-                let point = c.points[k];
-                let touched = (point.separation + change[k]).le(self.touch);
-                let bounces = zero.lt(wanted[k]) & touched;
-                let lack = wanted[k] - normals.velocity(&point);
-                let total = zero.max(given[k] + point.mass * lack);
-                let impulse = L::select(bounces, total - given[k], zero);
-                given[k] = given[k] + impulse;
-                normals.push(c, k, impulse);
-            }
-            normals.end(c, &mut a, &mut b);
         }
         a.scatter(self.rows, ends.a);
         b.scatter(self.rows, ends.b);

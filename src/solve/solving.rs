@@ -1,5 +1,6 @@
 //! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
 
+use super::bounce::{self, Bounces};
 use super::color::Coloring;
 use super::constraint::Constraint;
 use super::joint::{JointStream, Sources, Stiffness};
@@ -55,7 +56,9 @@ pub struct Solving<L: Lanes> {
     paces: Paces<L::Elem>,
     /// The pace that is being solved, where there are several.
     pace: Option<usize>,
-    bounces: soft::Bounces<L>,
+    bounces: Bounces<L>,
+    /// What bounces displace, per slot: x, y (metres), angle, –.
+    displaced: Vec<[L::Elem; 4]>,
     avbd: avbd::Avbd<L>,
     /// The graph of contacts is not the one `avbd` was cut for.
     recut: bool,
@@ -85,7 +88,8 @@ impl<L: Lanes> Default for Solving<L> {
             joints: JointStream::default(),
             paces: Paces::default(),
             pace: None,
-            bounces: soft::Bounces::default(),
+            bounces: Bounces::default(),
+            displaced: Vec::new(),
             avbd: avbd::Avbd::default(),
             recut: true,
             last_h_secs: 0.0,
@@ -232,10 +236,11 @@ impl<L: Lanes> Solving<L> {
             self.follow_pairs(task, manifolds, motion);
             motion.load::<L>(task.plan, bodies);
             self.bounces.resize(self.stream.batches());
-            self.stream.visit(&mut soft::NoteApproach {
+            self.stream.visit(&mut bounce::NoteApproach {
                 rows: motion.velocity.fours(),
                 accelerations: motion.acceleration.fours(),
                 threshold: L::lit(task.bounce_threshold()),
+                dt_secs: L::lit(task.dt_secs),
                 bounces: &mut self.bounces,
             });
         }
@@ -356,19 +361,15 @@ impl<L: Lanes> Solving<L> {
     pub fn end(
         &mut self,
         task: &Task<'_, L::Elem>,
-        manifolds: &Manifolds<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
         let settled = self.paces.count() > 1 || matches!(task.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing {
             self.follow_pairs(task, manifolds, motion);
-            let moved = (!settled).then_some(motion.moved.fours());
-            self.stream.visit(&mut soft::Bounce {
-                rows: motion.velocity.fours_mut(),
-                touch: L::lit(task.traits.touch()),
-                moved,
-                bounces: &mut self.bounces,
-            });
+            if self.bounce(task, motion, settled) && task.solver == Solver::Avbd {
+                self.stream.end_where(false, manifolds, None);
+            }
         }
         self.latest = if task.solver == Solver::Avbd {
             Latest::InPairs
@@ -377,6 +378,31 @@ impl<L: Lanes> Solving<L> {
         } else {
             Latest::BeforeDisplacements
         };
+    }
+
+    /// Gives bounces their impulses and displacements; says whether there were any.
+    fn bounce(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
+        let Self { displaced, stream, bounces, .. } = self;
+        let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours_mut());
+        displaced.clear();
+        displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
+        let before = (!settled).then_some(&*moved);
+        let touch = L::lit(task.traits.touch());
+        let mut pass = bounce::Bounce { rows, displaced, touch, moved: before, bounces, any: false };
+        stream.visit(&mut pass);
+        if !pass.any {
+            return false;
+        }
+        stream.visit(&mut bounce::Part { rows, displaced, moved: before });
+        if settled {
+            stream.visit(&mut Follow { moved: displaced });
+        }
+        for (moved, displaced) in moved.iter_mut().zip(displaced) {
+            for (way, change) in moved.iter_mut().zip(displaced).take(3) {
+                *way += *change;
+            }
+        }
+        true
     }
 
     /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.

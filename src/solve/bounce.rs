@@ -1,0 +1,255 @@
+//! Bounces, located within the step.
+//!
+//! As a step begins, a point that does not rest and closes at v < 0 over a gap s under the relative acceleration a will
+//! meet at t = 2s/(u − v) with the speed u = √(v² − 2a·s), and parts with e·u. As the step ends, r = h − t after that, its
+//! speed is e·u + a·r and its gap e·u·r + ½a·r²: [`Bounce`] gives the impulse for the one, and displacements for the
+//! other. Under constant acceleration both are exact, so no time is lost, no energy is gained, and a ball comes to rest
+//! when it should: where 2e·u < −a·r·(1 − e), all the bounces that are left fit into the step.
+//!
+//! What a bounce displaces must not enter others: [`Part`] moves it out again, and what comes to lie there begins the next
+//! step at the gap 0.
+
+use super::block::{answer, cross, non_negative};
+use super::constraint::{Constraint, Normals, Side};
+use super::stream::{Ends, Visit};
+use crate::lanes::{LaneMask, Lanes};
+
+/// Bounces of one point within a step that are followed one by one.
+const HOPS: usize = 16;
+
+/// How a point will part that bounces within the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Parting<L> {
+    /// Speed right after it has met, m/s; 0 where it does not bounce.
+    begins: L,
+    /// As the step ends, m/s.
+    speed: L,
+    /// As the step ends, metres.
+    gap: L,
+    /// From the impact to the step's end, seconds.
+    since: L,
+    /// What the contact stops that holds it from then on, which it will not have to, m/s.
+    borne: L,
+}
+
+/// What was noted at a step's beginning, per batch and point.
+#[derive(Clone, Debug)]
+pub struct Bounces<L> {
+    two: Vec<[Parting<L>; 2]>,
+    one: Vec<[Parting<L>; 1]>,
+}
+
+impl<L> Default for Bounces<L> {
+    fn default() -> Self {
+        Self { two: Vec::new(), one: Vec::new() }
+    }
+}
+
+impl<L: Lanes> Bounces<L> {
+    /// Makes room for so many batches.
+    pub fn resize(&mut self, [two, one]: [usize; 2]) {
+        let zero = L::zero();
+        let none = Parting { begins: zero, speed: zero, gap: zero, since: zero, borne: zero };
+        self.two.resize(two, [none; 2]);
+        self.one.resize(one, [none; 1]);
+    }
+
+    #[inline(always)]
+    fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [Parting<L>] {
+        if POINTS == 2 { &mut self.two[at] } else { &mut self.one[at] }
+    }
+}
+
+/// Notes how each point will part that approaches faster than the threshold and than its load of the last step explains.
+#[derive(Debug)]
+pub struct NoteApproach<'a, L: Lanes> {
+    /// Velocities at the step's beginning per slot.
+    pub rows: &'a [[L::Elem; 4]],
+    /// Accelerations at the step's beginning per slot: x, y (m/s²), angular.
+    pub accelerations: &'a [[L::Elem; 4]],
+    /// Slower approaches do not bounce, m/s.
+    pub threshold: L,
+    /// The step, seconds.
+    pub dt_secs: L,
+    /// Where to.
+    pub bounces: &'a mut Bounces<L>,
+}
+
+impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
+        let sides = |rows: &[[L::Elem; 4]]| (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
+        let (a, b) = sides(self.rows);
+        let (pull_a, pull_b) = sides(self.accelerations);
+        let (speeds, pulls) = (Normals::begin(c, &a, &b), Normals::begin(c, &pull_a, &pull_b));
+        let zero = L::zero();
+        for (point, noted) in c.points.iter().zip(self.bounces.at::<POINTS>(at)) {
+            let (speed, pull) = (speeds.velocity(point), pulls.velocity(point));
+            let meets = zero.max(speed * speed - L::lit(2.0) * (pull * point.separation)).sqrt();
+            // What it carried, if anything, is not what stops it: it has yet to meet.
+            let meeting = point.held.lt(L::lit(-0.5) * speed);
+            let bounces = speed.lt(-self.threshold) & meeting & zero.lt(point.mass);
+            let closing = L::select(bounces, meets - speed, L::one());
+            let until = L::lit(2.0) * zero.max(point.separation) / closing;
+            // Later than this step it meets only if others hold it up, as fast as it is.
+            let meets = L::select(until.le(self.dt_secs), meets, -speed);
+            let begins = L::select(bounces, c.restitution * meets, zero);
+            *noted = parting(begins, zero.max(self.dt_secs - until), pull, c.restitution);
+        }
+    }
+}
+
+/// How a point parts that has just met and has `since` seconds left, pulled back by `pull` < 0: it may meet again.
+#[inline(always)]
+fn parting<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Parting<L> {
+    let (zero, two) = (L::zero(), L::lit(2.0));
+    // Both sides of 2u < −a·r; `again` where it comes back within the step.
+    let comes = |begins: L, since: L| zero.lt(begins) & (two * begins).lt(-(pull * since));
+    let left = -(pull * since) * (L::one() - restitution);
+    begins = L::select((two * begins).lt(left), zero, begins);
+    let mut again = comes(begins, since);
+    for _ in 0..HOPS {
+        if !again.any() {
+            break;
+        }
+        since = L::select(again, since + two * begins / L::select(again, pull, -L::one()), since);
+        begins = L::select(again, restitution * begins, begins);
+        again = again & comes(begins, since);
+    }
+    begins = L::select(again, zero, begins);
+    let change = pull * since;
+    let gap = (begins + L::lit(0.5) * change) * since;
+    Parting { begins, speed: begins + change, gap, since, borne: zero.max(-change) }
+}
+
+/// The pass that ends a step: points that bounce and were stopped part as noted.
+#[derive(Debug)]
+pub struct Bounce<'a, L: Lanes> {
+    /// Velocities per slot.
+    pub rows: &'a mut [[L::Elem; 4]],
+    /// What bounces displace, per slot: x, y, angle, –; zeros before the pass.
+    pub displaced: &'a mut [[L::Elem; 4]],
+    /// Gaps up to this count as touched, metres.
+    pub touch: L,
+    /// Displacement of the last substep per slot; `None` where gaps are up to date.
+    pub moved: Option<&'a [[L::Elem; 4]]>,
+    /// What was noted.
+    pub bounces: &'a mut Bounces<L>,
+    /// Did something?
+    pub any: bool,
+}
+
+impl<L: Lanes> Visit<L> for Bounce<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
+        let noted = self.bounces.at::<POINTS>(at);
+        let zero = L::zero();
+        if !noted.iter().any(|noted| zero.lt(noted.begins).any()) {
+            return;
+        }
+        let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let (mut to_a, mut to_b) = displacements(self.displaced, &ends, [&a, &b]);
+        let mut ways = Normals::begin(c, &to_a, &to_b);
+        let mut normals = Normals::begin(c, &a, &b);
+        let gaps = gaps(c, &ends, self.moved);
+        let gaps: [L; POINTS] = std::array::from_fn(|k| gaps[k] + ways.velocity(&c.points[k]));
+        let bounces: [L::Mask; POINTS] = std::array::from_fn(|k| {
+            // One that nothing has stopped yet will be met in the next step.
+            let stopped = (L::lit(-0.5) * noted[k].begins).le(normals.velocity(&c.points[k]));
+            zero.lt(noted[k].begins) & gaps[k].le(self.touch) & stopped
+        });
+        let where_bounces = |of: &dyn Fn(usize) -> L| -> [L; POINTS] {
+            std::array::from_fn(|k| L::select(bounces[k], of(k), zero))
+        };
+        let masses = where_bounces(&|k| c.points[k].mass);
+        let cross = cross(c, &normals);
+        let borne = where_bounces(&|k| noted[k].borne);
+        let answer = answer(cross, masses, borne);
+        let lacks = where_bounces(&|k| normals.velocity(&c.points[k]) - noted[k].speed - answer[k]);
+        let given = non_negative(cross, masses, lacks);
+        let parted = non_negative(cross, masses, where_bounces(&|k| gaps[k] - noted[k].gap));
+        let (mut load, mut since, mut kept) = (zero, zero, zero);
+        for k in 0..POINTS {
+            let impulse = masses[k] * (given[k] - borne[k]);
+            normals.push(c, k, impulse);
+            ways.push(c, k, masses[k] * parted[k]);
+            load = load + zero.max(impulse);
+            since = since.max(L::select(bounces[k], noted[k].since, zero));
+            // An impact is no load to begin the next step with.
+            c.points[k].held = L::select(bounces[k], zero, c.points[k].held);
+            kept = kept.max(c.points[k].held);
+            self.any |= bounces[k].any();
+        }
+        normals.end(c, &mut a, &mut b);
+        ways.end(c, &mut to_a, &mut to_b);
+        let rubbed = c.rub_within(&mut a, &mut b, zero, load);
+        c.rub(&mut to_a, &mut to_b, rubbed * since);
+        c.tangent_impulse = L::select(zero.lt(since) & kept.le(zero), zero, c.tangent_impulse);
+        a.scatter(self.rows, ends.a);
+        b.scatter(self.rows, ends.b);
+        to_a.scatter(self.displaced, ends.a);
+        to_b.scatter(self.displaced, ends.b);
+    }
+}
+
+/// The pass after [`Bounce`]: what bounces displaced into others, or deeper into them, is moved out again.
+#[derive(Debug)]
+pub struct Part<'a, L: Lanes> {
+    /// Velocities per slot, for their inverse masses.
+    pub rows: &'a [[L::Elem; 4]],
+    /// What bounces displace, per slot.
+    pub displaced: &'a mut [[L::Elem; 4]],
+    /// Displacement of the last substep per slot; `None` where gaps are up to date.
+    pub moved: Option<&'a [[L::Elem; 4]]>,
+}
+
+impl<L: Lanes> Visit<L> for Part<'_, L> {
+    #[inline(always)]
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let (a, b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let (mut to_a, mut to_b) = displacements(self.displaced, &ends, [&a, &b]);
+        let mut ways = Normals::begin(c, &to_a, &to_b);
+        let zero = L::zero();
+        let before = gaps(c, &ends, self.moved);
+        let entered: [L; POINTS] = std::array::from_fn(|k| {
+            let way = ways.velocity(&c.points[k]);
+            // What overlapped before may, as much.
+            L::select(way.lt(zero), zero.min(way + zero.max(before[k])), zero)
+        });
+        if !entered.iter().any(|entered| entered.lt(zero).any()) {
+            return;
+        }
+        let masses = c.points.map(|point| point.mass);
+        let parted = non_negative(cross(c, &ways), masses, entered);
+        for k in 0..POINTS {
+            ways.push(c, k, masses[k] * parted[k]);
+        }
+        ways.end(c, &mut to_a, &mut to_b);
+        to_a.scatter(self.displaced, ends.a);
+        to_b.scatter(self.displaced, ends.b);
+    }
+}
+
+/// Displacements of both sides as if they were velocities: to pushes they are what those are to impulses.
+#[inline(always)]
+fn displacements<L: Lanes>(
+    rows: &[[L::Elem; 4]],
+    ends: &Ends<'_>,
+    [a, b]: [&Side<L>; 2],
+) -> (Side<L>, Side<L>) {
+    let side = |slots: &[u32], like: &Side<L>| Side { inv_mass: like.inv_mass, ..Side::gather(rows, slots) };
+    (side(ends.a, a), side(ends.b, b))
+}
+
+/// Gaps once bodies have `moved`.
+#[inline(always)]
+fn gaps<L: Lanes, const POINTS: usize>(
+    c: &Constraint<L, POINTS>,
+    ends: &Ends<'_>,
+    moved: Option<&[[L::Elem; 4]]>,
+) -> [L; POINTS] {
+    let change = moved.map_or([L::zero(); POINTS], |moved| {
+        c.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
+    });
+    std::array::from_fn(|k| c.points[k].separation + change[k])
+}
