@@ -140,21 +140,22 @@ fn before_anything_sleeps_no_bit_differs() {
 }
 
 #[test]
-fn a_ball_dropped_on_a_sleeping_pyramid_wakes_it_when_it_lands() {
+fn a_box_dropped_on_a_sleeping_pyramid_wakes_it_when_it_lands() {
     let mut world = world_of::<f32s::X8>(&named("pyramid/10"), drowsy());
     put_to_sleep(&mut world, 600);
     let boxes = world.sleeping();
-    let ball = BodySpec::new(ShapeSpec::Circle(0.5), [0.3, 14.0]).mass(2.0);
-    let ball = world.insert(&ball).expect("a good body");
+    // Not a ball: one that rolls off the pyramid rolls on for ever.
+    let dropped = BodySpec::new(ShapeSpec::Box([0.5, 0.5]), [0.3, 14.0]).mass(2.0);
+    let dropped = world.insert(&dropped).expect("a good body");
     step(&mut world, 20);
-    assert_eq!(world.sleeping(), boxes, "the ball still falls");
-    assert!(!world.is_asleep(ball));
+    assert_eq!(world.sleeping(), boxes, "the box still falls");
+    assert!(!world.is_asleep(dropped));
     let mut landed = false;
     for _ in 0..60 {
         step(&mut world, 1);
         landed |= world.sleeping() == 0;
     }
-    assert!(landed, "the ball woke nobody");
+    assert!(landed, "the box woke nobody");
     put_to_sleep(&mut world, 1200);
 }
 
