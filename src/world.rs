@@ -241,14 +241,15 @@ impl<L: Lanes> World<L> {
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
         let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
-            (self.disturbed, self.motion.swift) = (true, true);
+            self.disturbed = true;
+            self.motion.stir_up();
             let fast = self.continuous.begin(self.settings.continuous);
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
         } else {
             let task = Task { solver, traits, dt_secs, plan: &plan };
             let moved = self.move_in_contact(&task, &seen, &mut clock);
             let fast = self.continuous.begin(self.settings.continuous);
-            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, task.bounce_threshold());
+            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, task.speeds());
             moved
         };
         self.fields = fields;
@@ -389,7 +390,8 @@ impl<L: Lanes> World<L> {
             self.inspected_joints = self.joints.revision();
             self.broad.keep_apart(self.joints.apart());
             self.look_over_islands();
-            (self.disturbed, self.motion.swift) = (true, true);
+            self.disturbed = true;
+            self.motion.stir_up();
         }
         if self.inspected == Some(seen) {
             return;
@@ -413,7 +415,7 @@ impl<L: Lanes> World<L> {
             gravity: gx.hypot(gy),
         };
         self.motion.resize(&self.bodies);
-        self.motion.swift = true;
+        self.motion.stir_up();
         self.continuous.look_over(&self.bodies);
         self.look_over_islands();
         self.disturbed = true;

@@ -400,15 +400,16 @@ pub const STIR: f64 = 4e-3;
 
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
 /// have gone further than [`STIR`] of their radius since they last did are noted as stirred, fast ones in `fast`.
-/// `swift`: a speed, m/s, that no two bodies' points reach together while no body's reaches half of it.
+/// `speeds`, m/s, that no two bodies' points reach together while no body's reaches half of them: those of
+/// [`Motion::swift`] and [`Motion::lively`].
 pub fn finish<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
     mut fast: FastBodies<'_, L::Elem>,
-    swift: f64,
+    speeds: [f64; 2],
 ) {
-    let (bound, half_swift) = (L::lit(STIR), L::lit(0.5 * swift));
-    let (mut any_stirred, mut any_swift) = (0, 0);
+    let (bound, [half_swift, half_lively]) = (L::lit(STIR), speeds.map(|speed| L::lit(0.5 * speed)));
+    let (mut any_stirred, mut any_swift, mut any_lively) = (0, 0, 0);
     let runs = std::mem::take(&mut motion.runs);
     for start in starts_in::<L>(&runs) {
         let mut angle = [L::zero(); BLOCK];
@@ -429,7 +430,9 @@ pub fn finish<L: Lanes>(
                 column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
             }
             angle[i] = moved[2];
-            any_swift |= half_swift.le((vx.abs() + vy.abs()) + radius * w.abs()).bits();
+            let speed = (vx.abs() + vy.abs()) + radius * w.abs();
+            any_swift |= half_swift.le(speed).bits();
+            any_lively |= half_lively.le(speed).bits();
             let drift = motion.drift.lanes::<L>()[at] + path;
             let stirs = (bound * radius).lt(drift);
             motion.drift.lanes_mut::<L>()[at] = L::select(stirs, L::zero(), drift);
@@ -442,7 +445,8 @@ pub fn finish<L: Lanes>(
         turn_block(bodies, start, &angle);
     }
     motion.runs = runs;
-    (motion.any_stirred, motion.swift) = (any_stirred != 0, any_swift != 0);
+    motion.any_stirred = any_stirred != 0;
+    (motion.swift, motion.lively) = (any_swift != 0, any_lively != 0);
 }
 
 #[inline(always)]

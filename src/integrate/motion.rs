@@ -32,8 +32,10 @@ pub struct Motion<R: Real> {
     pub stirred: Vec<bool>,
     /// Is there one?
     pub any_stirred: bool,
-    /// May two bodies meet faster than the bounce threshold?
+    /// May two bodies close more than the gap that contacts are found within?
     pub swift: bool,
+    /// May two bodies meet fast enough to bounce?
+    pub lively: bool,
     /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
     pub runs: Vec<Range<usize>>,
     /// Which pace each slot has, and the one whose bodies move now; all do where it is `None`.
@@ -70,6 +72,7 @@ impl<R: Real> Default for Motion<R> {
             stirred: Vec::new(),
             any_stirred: true,
             swift: true,
+            lively: true,
             runs: Vec::new(),
             paces: Column::new(R::ZERO),
             pace: None,
@@ -139,6 +142,11 @@ impl<R: Real> Motion<R> {
         }
         let rows = self.matter.fours_mut()[..len].iter_mut().zip(asleep);
         rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
+    }
+
+    /// Bodies may be as fast as they like: something has changed.
+    pub fn stir_up(&mut self) {
+        (self.swift, self.lively) = (true, true);
     }
 
     /// All bodies begin to drift anew.

@@ -29,7 +29,7 @@ pub(super) fn resolve<L: Lanes>(
     rows: &mut [[L::Elem; 4]],
     moved: Option<&[[L::Elem; 4]]>,
 ) {
-    let threshold = L::lit(task.bounce_threshold());
+    let threshold = L::lit(task.swift());
     match (task.traits.friction, task.traits.restitution) {
         (true, true) => stream.visit(&mut Resolve::<L, true, true> { rows, moved, threshold }),
         (true, false) => stream.visit(&mut Resolve::<L, true, false> { rows, moved, threshold }),

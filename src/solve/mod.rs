@@ -68,8 +68,10 @@ pub struct Traits {
 
 /// Gaps up to this share of the scene's median radius are contacts.
 const MARGIN: f64 = 0.025;
+/// Bodies as fast as gravity makes them in so many steps are looked ahead for; slower ones stay within the margin.
+const SWIFT_STEPS: f64 = 3.0;
 /// Approaches slower than gravity makes in so many steps do not bounce. A ball comes to rest by itself before
-/// ([`bounce`]); this is for those that gravity does not bring back. At 3, a bouncing disc of e = 0.8 rested 6 % early.
+/// ([`bounce`]); this is for those that gravity does not bring back. At 3, a disc of e = 0.8 rested 6 % early.
 const BOUNCE_STEPS: f64 = 0.01;
 /// Gaps up to this share of the median radius have touched: when a bounce is due, when a fast body is stopped.
 const TOUCH: f64 = 1e-3;
@@ -124,8 +126,18 @@ pub struct Task<'a, R> {
 }
 
 impl<R> Task<'_, R> {
+    /// Slower bodies stay within the margin, m/s; slower approaches do not bounce where a step knows nothing of gaps.
+    pub fn swift(&self) -> f64 {
+        SWIFT_STEPS * self.traits.gravity * self.dt_secs
+    }
+
     /// Slower approaches do not bounce, m/s.
     pub fn bounce_threshold(&self) -> f64 {
         BOUNCE_STEPS * self.traits.gravity * self.dt_secs
+    }
+
+    /// Of swift bodies, and of those that may bounce.
+    pub fn speeds(&self) -> [f64; 2] {
+        [self.swift(), self.bounce_threshold()]
     }
 }

@@ -230,7 +230,7 @@ impl<L: Lanes> Solving<L> {
         let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
         self.scale = if last > 0.0 { h / last } else { 1.0 };
         let bounced = self.bouncing;
-        self.bouncing = task.traits.restitution && pushes(task.solver) && motion.swift;
+        self.bouncing = task.traits.restitution && pushes(task.solver) && motion.lively;
         if self.bouncing {
             self.hand_back(manifolds, motion);
             self.follow_pairs(task, manifolds, motion);
