@@ -98,6 +98,16 @@ pub const SCENES: &[SceneInfo] = &joined::<{ NAMED.len() + smooth::SCENES.len() 
     contact::SCENES,
 ]);
 
+/// A scene of which nothing can be chosen.
+pub(super) const fn fixed(
+    name: &'static str,
+    about: &'static str,
+    build: fn(usize, u64) -> Scene,
+    bodies: usize,
+) -> SceneInfo {
+    SceneInfo { name, takes: Takes::Nothing, default: bodies, about, build }
+}
+
 /// Three tables as one.
 const fn joined<const N: usize>(tables: [&[SceneInfo]; 3]) -> [SceneInfo; N] {
     let mut all = [tables[0][0]; N];

@@ -3,7 +3,7 @@
 //! One point after the other left a resting box turning at 0.02 rad/s, and let columns lean: 40 boxes fell at 4
 //! substeps. Together a symmetric column stays symmetric to the bit and 80 boxes stand at 8, for a tenth more time.
 
-use super::constraint::{Constraint, Normals};
+use super::constraint::{Constraint, Normals, Side};
 use crate::lanes::Lanes;
 
 /// K₀₁: what a unit impulse at one point changes the normal velocity of the other by; 0 for one point.
@@ -48,6 +48,22 @@ pub(super) fn relaxed<L: Lanes, const POINTS: usize>(
         normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
     });
     non_negative(cross, masses, wanted)
+}
+
+/// Pushes displaced bodies apart, as far as points lie `entered` < 0 too deep: `ways` are their displacements in progress.
+#[inline(always)]
+pub(super) fn part<L: Lanes, const POINTS: usize>(
+    c: &Constraint<L, POINTS>,
+    mut ways: Normals<L>,
+    entered: [L; POINTS],
+    [a, b]: [&mut Side<L>; 2],
+) {
+    let masses = c.points.map(|point| point.mass);
+    let parted = non_negative(cross(c, &ways), masses, entered);
+    for k in 0..POINTS {
+        ways.push(c, k, masses[k] * parted[k]);
+    }
+    ways.end(c, a, b);
 }
 
 /// y ≥ 0 with K·x + b ≥ 0 and y·(K·x + b) = 0, where x = m·y are impulses, K has 1/m on its diagonal and

@@ -9,7 +9,7 @@
 //! What a bounce displaces must not enter others: [`Part`] moves it out again, and what comes to lie there begins the next
 //! step at the gap 0.
 
-use super::block::{answer, cross, non_negative};
+use super::block::{answer, cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
 use crate::lanes::{LaneMask, Lanes};
@@ -148,7 +148,8 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
             return;
         }
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
-        let (mut to_a, mut to_b) = displacements(self.displaced, &ends, [&a, &b]);
+        let mut to_a = Side::displacement(self.displaced, ends.a, a.inv_mass);
+        let mut to_b = Side::displacement(self.displaced, ends.b, b.inv_mass);
         let mut ways = Normals::begin(c, &to_a, &to_b);
         let mut normals = Normals::begin(c, &a, &b);
         let gaps = gaps(c, &ends, self.moved);
@@ -206,9 +207,11 @@ pub struct Part<'a, L: Lanes> {
 impl<L: Lanes> Visit<L> for Part<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        let (a, b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
-        let (mut to_a, mut to_b) = displacements(self.displaced, &ends, [&a, &b]);
-        let mut ways = Normals::begin(c, &to_a, &to_b);
+        let side = |slots: &[u32]| {
+            Side::displacement(self.displaced, slots, Side::<L>::gather(self.rows, slots).inv_mass)
+        };
+        let (mut to_a, mut to_b) = (side(ends.a), side(ends.b));
+        let ways = Normals::begin(c, &to_a, &to_b);
         let zero = L::zero();
         let before = gaps(c, &ends, self.moved);
         let entered: [L; POINTS] = std::array::from_fn(|k| {
@@ -219,26 +222,10 @@ impl<L: Lanes> Visit<L> for Part<'_, L> {
         if !entered.iter().any(|entered| entered.lt(zero).any()) {
             return;
         }
-        let masses = c.points.map(|point| point.mass);
-        let parted = non_negative(cross(c, &ways), masses, entered);
-        for k in 0..POINTS {
-            ways.push(c, k, masses[k] * parted[k]);
-        }
-        ways.end(c, &mut to_a, &mut to_b);
+        part(c, ways, entered, [&mut to_a, &mut to_b]);
         to_a.scatter(self.displaced, ends.a);
         to_b.scatter(self.displaced, ends.b);
     }
-}
-
-/// Displacements of both sides as if they were velocities: to pushes they are what those are to impulses.
-#[inline(always)]
-fn displacements<L: Lanes>(
-    rows: &[[L::Elem; 4]],
-    ends: &Ends<'_>,
-    [a, b]: [&Side<L>; 2],
-) -> (Side<L>, Side<L>) {
-    let side = |slots: &[u32], like: &Side<L>| Side { inv_mass: like.inv_mass, ..Side::gather(rows, slots) };
-    (side(ends.a, a), side(ends.b, b))
 }
 
 /// Gaps once bodies have `moved`.
@@ -248,8 +235,6 @@ fn gaps<L: Lanes, const POINTS: usize>(
     ends: &Ends<'_>,
     moved: Option<&[[L::Elem; 4]]>,
 ) -> [L; POINTS] {
-    let change = moved.map_or([L::zero(); POINTS], |moved| {
-        c.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
-    });
+    let change = moved.map_or([L::zero(); POINTS], |moved| c.change_by(moved, ends));
     std::array::from_fn(|k| c.points[k].separation + change[k])
 }

@@ -31,6 +31,13 @@ impl<L: Lanes> Side<L> {
         Self { velocity: Vec2::new(x, y), spin, inv_mass }
     }
 
+    /// From rows of displacements: x, y (metres), angle, –. To its push a displacement is what a velocity is to its
+    /// impulse, so the same kernels serve.
+    #[inline(always)]
+    pub(super) fn displacement(rows: &[[L::Elem; 4]], index: &[u32], inv_mass: L) -> Self {
+        Self { inv_mass, ..Self::gather(rows, index) }
+    }
+
     /// Back into the rows.
     #[inline(always)]
     pub fn scatter(&self, rows: &mut [[L::Elem; 4]], index: &[u32]) {
@@ -185,13 +192,19 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         })
     }
 
+    /// What the separations change by with the displacements of both sides, rows per slot.
+    #[inline(always)]
+    pub(super) fn change_by(&self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) -> [L; POINTS] {
+        self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
+    }
+
     /// Brings the separations up to date with the displacement of both sides, unless they are.
     #[inline(always)]
     pub fn follow(&mut self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) {
         if ends.fresh {
             return;
         }
-        let change = self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
+        let change = self.change_by(moved, ends);
         for k in 0..POINTS {
             self.points[k].separation = self.points[k].separation + change[k];
         }

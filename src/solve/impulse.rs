@@ -12,7 +12,7 @@
 //! other left a resting box turning at 0.02 rad/s and creeping sideways at 5 cm/s; together, neither.
 
 use super::Task;
-use super::block::{cross, non_negative};
+use super::block::{cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
 use crate::lanes::Lanes;
@@ -97,24 +97,17 @@ pub(super) struct Correct<'a, L: Lanes> {
 impl<L: Lanes> Visit<L> for Correct<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        // A displacement is to its push as a velocity is to its impulse: the same kernels serve.
-        let side = |moved: &[[L::Elem; 4]], slots: &[u32]| Side {
-            inv_mass: Side::<L>::gather(self.rows, slots).inv_mass,
-            ..Side::gather(moved, slots)
+        let side = |slots: &[u32]| {
+            Side::displacement(self.moved, slots, Side::<L>::gather(self.rows, slots).inv_mass)
         };
-        let (mut a, mut b) = (side(self.moved, ends.a), side(self.moved, ends.b));
-        let mut normals = Normals::begin(c, &a, &b);
+        let (mut a, mut b) = (side(ends.a), side(ends.b));
+        let normals = Normals::begin(c, &a, &b);
         let sinking: [L; POINTS] = std::array::from_fn(|k| {
             let point = &c.points[k];
             let excess = -(point.separation + normals.velocity(point)) - self.slop;
             -(L::zero().max(excess) * L::lit(CORRECTION_SHARE))
         });
-        let masses = c.points.map(|point| point.mass);
-        let raised = non_negative(cross(c, &normals), masses, sinking);
-        for k in 0..POINTS {
-            normals.push(c, k, masses[k] * raised[k]);
-        }
-        normals.end(c, &mut a, &mut b);
+        part(c, normals, sinking, [&mut a, &mut b]);
         a.scatter(self.moved, ends.a);
         b.scatter(self.moved, ends.b);
     }

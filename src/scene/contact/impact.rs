@@ -106,9 +106,7 @@ const BILLIARD: [f64; 2] = [1.0, 0.75];
 const BILLIARD_DISC_M: f64 = 0.1;
 /// What places in B16 are compared with, metres.
 pub const BILLIARD_SIZE_M: f64 = 2.0;
-/// As many bounces as B16 counts, and the whole seconds they fit into: 3.1/1.8 + 2.3/1.3 a second.
-pub const BILLIARD_BOUNCES: u32 = 1000;
-/// Seconds of [`BILLIARD_BOUNCES`].
+/// The whole seconds in which B16 counts 1000 bounces: 3.1/1.8 + 2.3/1.3 a second.
 pub const BILLIARD_SECS: f64 = 287.0;
 
 /// Four static walls around a box, 1 m thick, that bounce with e = 1.

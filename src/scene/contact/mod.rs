@@ -11,14 +11,14 @@ mod stacks;
 mod tipping;
 
 use super::cases::{self, Form};
-use super::named::{SceneInfo, Takes};
+use super::named::{SceneInfo, fixed as info};
 use super::{BodyKind, BodySpec, Scene, ShapeSpec, driven};
 
 pub use chain::{CHAIN_LENGTH_M, chain_at};
 pub use gas::{GAS, Gas, reversed};
 pub use impact::{
-    BILLIARD_BOUNCES, BILLIARD_SECS, BILLIARD_SIZE_M, ELASTIC_DROP_M, after_head_on, after_oblique,
-    cradle_at_once_after, cradle_gaps_after, cradle_touching_after,
+    BILLIARD_SECS, BILLIARD_SIZE_M, ELASTIC_DROP_M, after_head_on, after_oblique, cradle_at_once_after,
+    cradle_gaps_after, cradle_touching_after,
 };
 pub use rolling::{LOOP_RADIUS_M, bowl_period_secs, loop_at};
 pub use sliding::{STICK_FRICTION, TOPPLE_RATIO, block_on_slope, box_on_slope, pushed_board_accelerations};
@@ -31,15 +31,6 @@ pub const GRAVITY: f64 = 9.81;
 /// A body that goes straight on with its velocity.
 fn kinematic(body: BodySpec) -> BodySpec {
     BodySpec { kind: BodyKind::Kinematic, ..body }
-}
-
-const fn info(
-    name: &'static str,
-    about: &'static str,
-    build: fn(usize, u64) -> Scene,
-    bodies: usize,
-) -> SceneInfo {
-    SceneInfo { name, takes: Takes::Nothing, default: bodies, about, build }
 }
 
 /// The scenes of table B, in its order.

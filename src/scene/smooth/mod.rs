@@ -9,7 +9,7 @@ mod oscillator;
 mod pendulum;
 
 use super::cases::{Exact, Form};
-use super::named::{SceneInfo, Takes};
+use super::named::{SceneInfo, fixed as info};
 use super::{BodySpec, Scene, ShapeSpec};
 use crate::force::Forces;
 
@@ -35,15 +35,6 @@ fn at(position: [f64; 2]) -> Vec<Exact> {
 /// A scene of 2 s.
 fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces) -> Scene {
     super::named::scene(about, bodies, forces, 120)
-}
-
-const fn info(
-    name: &'static str,
-    about: &'static str,
-    build: fn(usize, u64) -> Scene,
-    bodies: usize,
-) -> SceneInfo {
-    SceneInfo { name, takes: Takes::Nothing, default: bodies, about, build }
 }
 
 /// The scenes of table A, in its order.
