@@ -183,8 +183,10 @@ impl Session {
             Action::Choose { integrator, solver, substeps } => {
                 let (integrator, solver, substeps) = (*integrator, *solver, *substeps);
                 let settings = *self.world.settings();
-                let max_sag = settings.max_sag.filter(|_| solver == Solver::Soft);
-                self.world.set_settings(Settings { integrator, solver, substeps, max_sag, ..settings })?;
+                let of_soft = |asked: Option<f64>| asked.filter(|_| solver == Solver::Soft);
+                let [max_sag, stiffness] = [settings.max_sag, settings.stiffness].map(of_soft);
+                let asked = Settings { integrator, solver, substeps, max_sag, stiffness, ..settings };
+                self.world.set_settings(asked)?;
             }
             Action::Fields(forces) => self.world.set_forces(**forces)?,
         }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::lanes::Real;
+use crate::solve::soft::HERTZ_TIMES_SUBSTEP;
 
 /// A value that is not among the choices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -226,6 +227,12 @@ pub enum SettingsError {
     /// Only one solver knows what its contacts sag by.
     #[error("max-sag needs the solver soft, got {0}")]
     MaxSagSolver(Solver),
+    /// A share of the substep rate.
+    #[error("stiffness must be over 0 and at most 0.5, got {0:?}")]
+    Stiffness(f64),
+    /// Only one solver's contacts are springs.
+    #[error("stiffness needs the solver soft, got {0}")]
+    StiffnessSolver(Solver),
     /// Lane widths are 1, 4, 8 and 16 for f32, 1 and 4 for f64.
     #[error("lanes must be {choices} with {precision}, got {given}")]
     Lanes {
@@ -268,7 +275,14 @@ pub struct Settings {
     /// `substeps` is then what bodies have that touch nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_sag: Option<f64>,
+    /// Stiffness of soft contacts, hz·h: their frequency as a share of the substep rate, over 0 up to
+    /// [`MOST_STIFF`]; `None` for [`crate::solve::soft::HERTZ_TIMES_SUBSTEP`], the stiffest that stays calm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
 }
+
+/// Half a swing a substep: beyond, a spring turns faster than substeps can see.
+pub const MOST_STIFF: f64 = 0.5;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -284,6 +298,7 @@ impl Default for Settings {
             continuous: true,
             sleep: false,
             max_sag: None,
+            stiffness: None,
         }
     }
 }
@@ -307,11 +322,16 @@ impl Settings {
         Self { lanes, precision, ..self }
     }
 
+    /// The stiffness of soft contacts, hz·h.
+    pub fn contact_stiffness(&self) -> f64 {
+        self.stiffness.unwrap_or(HERTZ_TIMES_SUBSTEP)
+    }
+
     /// Refuses what cannot be run.
     ///
     /// # Errors
-    /// A step or bound on the sag that is not positive and finite, such a bound with a solver other than `soft`, no
-    /// substep, a lane width the precision does not have.
+    /// A step or bound on the sag that is not positive and finite, a stiffness that is no share of a half, either with
+    /// a solver other than `soft`, no substep, a lane width the precision does not have.
     pub fn check(&self) -> Result<(), SettingsError> {
         let dt_secs = match self.precision {
             Precision::F32 => f64::from(f32::from_f64(self.dt_secs)),
@@ -329,6 +349,14 @@ impl Settings {
             }
             if self.solver != Solver::Soft {
                 return Err(SettingsError::MaxSagSolver(self.solver));
+            }
+        }
+        if let Some(stiffness) = self.stiffness {
+            if !(stiffness > 0.0 && stiffness <= MOST_STIFF) {
+                return Err(SettingsError::Stiffness(stiffness));
+            }
+            if self.solver != Solver::Soft {
+                return Err(SettingsError::StiffnessSolver(self.solver));
             }
         }
         if !Self::widths(self.precision).contains(&self.lanes) {

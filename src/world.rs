@@ -246,7 +246,8 @@ impl<L: Lanes> World<L> {
             let fast = self.continuous.begin(self.settings.continuous);
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
         } else {
-            let task = Task { solver, traits, dt_secs, plan: &plan };
+            let stiffness = self.settings.contact_stiffness();
+            let task = Task { solver, traits, dt_secs, stiffness, plan: &plan };
             let moved = self.move_in_contact(&task, &seen, &mut clock);
             let fast = self.continuous.begin(self.settings.continuous);
             integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, task.speeds());
@@ -322,7 +323,8 @@ impl<L: Lanes> World<L> {
     ) -> (integrate::Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
         let repaced = self.settings.max_sag.is_some_and(|max_sag| {
-            let goal = Goal { max_sag, base: task.plan.substeps, dt_secs: task.dt_secs };
+            let Task { dt_secs, stiffness, .. } = *task;
+            let goal = Goal { max_sag, base: task.plan.substeps, dt_secs, stiffness };
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {

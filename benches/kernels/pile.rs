@@ -9,6 +9,7 @@ use lamina2d::joint::Joints;
 use lamina2d::lanes::{Lanes, f32s};
 use lamina2d::narrow::Narrow;
 use lamina2d::settings::{Broad, Integrator, Skips, Solver};
+use lamina2d::solve::soft::HERTZ_TIMES_SUBSTEP;
 use lamina2d::solve::{self, Solving, Task};
 
 use super::{TRAITS, margin};
@@ -110,5 +111,5 @@ impl<L: Lanes<Elem = f32>> Memory<L> {
 
 /// A step of `plan`, as its solver sees it.
 pub(super) fn task<'a>(solver: Solver, plan: &'a Plan<'a, f32>) -> Task<'a, f32> {
-    Task { solver, traits: TRAITS, dt_secs: DT_SECS, plan }
+    Task { solver, traits: TRAITS, dt_secs: DT_SECS, stiffness: HERTZ_TIMES_SUBSTEP, plan }
 }

@@ -7,10 +7,37 @@ use super::sweep::{Results, Row};
 /// The errors asked for.
 pub const LEVELS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
-/// Rows that no other row of the case beats in both error and time, from the least time to the least error.
-pub fn pareto(results: &Results) -> Vec<&Row> {
+/// What a run costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// ns.
+    Time,
+    /// Counted.
+    Instructions,
+}
+
+impl Cost {
+    /// Of a row, to its end.
+    pub fn of(self, row: &Row) -> Option<f64> {
+        match self {
+            Self::Time => row.ns_total,
+            Self::Instructions => row.instructions_total,
+        }
+    }
+
+    /// In words.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Time => "time to the end, ns",
+            Self::Instructions => "instructions to the end",
+        }
+    }
+}
+
+/// Rows that no other row of the case beats in both error and cost, from the least cost to the least error.
+pub fn pareto(results: &Results, cost: Cost) -> Vec<&Row> {
     let mut sorted: Vec<(&Row, f64, f64)> =
-        results.told().filter_map(|row| Some((row, row.ns_total?, row.error?))).collect();
+        results.told().filter_map(|row| Some((row, cost.of(row)?, row.error?))).collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
     let mut best = f64::INFINITY;
     sorted.retain(|(_, _, error)| {
@@ -69,7 +96,7 @@ impl Fastest {
     }
 }
 
-fn fastest(rows: &[Row], level: f64) -> Option<Run> {
+pub(super) fn fastest(rows: &[Row], level: f64) -> Option<Run> {
     let good = rows.iter().filter_map(|row| {
         let (error, ns_total) = (row.error.filter(|error| *error <= level)?, row.ns_total?);
         Some((row, error, ns_total))

@@ -8,7 +8,7 @@ use crate::scene::{Scene, SceneError, by_name, cases, smooth};
 use crate::settings::{Integrator, Settings, Solver};
 
 /// How a case is stepped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Method {
     /// Smooth motion.
     pub integrator: Integrator,
@@ -16,26 +16,32 @@ pub struct Method {
     pub solver: Option<Solver>,
     /// Rounds per step.
     pub substeps: u32,
+    /// Of soft contacts, hz·h; `None` for the default.
+    pub stiffness: Option<f64>,
 }
 
 impl Method {
     /// An integrator alone.
     pub const fn alone(integrator: Integrator) -> Self {
-        Self { integrator, solver: None, substeps: 1 }
+        Self { integrator, solver: None, substeps: 1, stiffness: None }
     }
 
     /// The settings it stands for; precision and lanes are those of `settings`.
     #[must_use]
     pub fn settings(self, settings: Settings) -> Settings {
-        let Self { integrator, solver, substeps } = self;
-        Settings { integrator, solver: solver.unwrap_or(settings.solver), substeps, ..settings }
+        let Self { integrator, solver, substeps, stiffness } = self;
+        Settings { integrator, solver: solver.unwrap_or(settings.solver), substeps, stiffness, ..settings }
     }
 }
 
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.solver {
-            Some(solver) => write!(f, "{solver} ×{} {}", self.substeps, self.integrator),
+            Some(solver) => {
+                write!(f, "{solver} ×{}", self.substeps)?;
+                self.stiffness.map_or(Ok(()), |stiffness| write!(f, " at {stiffness}"))?;
+                write!(f, " {}", self.integrator)
+            }
             None => write!(f, "{}", self.integrator),
         }
     }
@@ -170,9 +176,19 @@ impl Case {
         by_name(self.scene, None, 1)
     }
 
-    /// Is it one of table B: about contact?
+    /// Is it one of table B, or one of the mixes: about contact?
     pub fn is_contact(&self) -> bool {
         matches!(self.norm, Norm::Own(_))
+    }
+
+    /// Is it one of a shape mix?
+    pub fn is_mix(&self) -> bool {
+        self.item == "M"
+    }
+
+    /// Does one error of it take so many runs that a quick sweep of all cases leaves it out?
+    pub fn is_ensemble(&self) -> bool {
+        self.unit == "standard errors"
     }
 
     /// The times of its samples, seconds.

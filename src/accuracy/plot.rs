@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 
-use super::best::{Profile, pareto};
+use super::best::{Cost, Profile, pareto};
 use super::sweep::{Results, Row};
 use crate::report::chart::{Area, PALETTE, around, plot, to_svg};
 use crate::settings::{Precision, Settings};
@@ -22,28 +22,38 @@ fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     10f64.powf(range.start.log10().floor())..10f64.powf(range.end.log10().ceil())
 }
 
-/// The palette's colours, then brown and grey.
+/// Beside the palette's colours, for cases of many methods.
+const MORE: [RGBColor; 9] = [
+    RGBColor(120, 80, 30),
+    RGBColor(90, 90, 90),
+    RGBColor(110, 60, 170),
+    RGBColor(170, 0, 60),
+    RGBColor(90, 130, 0),
+    RGBColor(0, 130, 140),
+    RGBColor(240, 110, 110),
+    RGBColor(150, 150, 220),
+    RGBColor(60, 60, 20),
+];
+
 fn colour(k: usize) -> RGBColor {
-    let more = [RGBColor(120, 80, 30), RGBColor(90, 90, 90)];
-    let all = PALETTE.len() + more.len();
-    *PALETTE.iter().chain(&more).nth(k % all).unwrap_or(&BLACK)
+    *PALETTE.iter().chain(&MORE).nth(k % (PALETTE.len() + MORE.len())).unwrap_or(&BLACK)
 }
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// One method at one precision.
 struct Line<'a> {
-    name: String,
+    method: &'a str,
     color: RGBColor,
     precision: &'static str,
     rows: Vec<&'a Row>,
 }
 
-/// A case: error on x, time on y; `None` where no run came to its end.
-pub(super) fn case(results: &Results) -> anyhow::Result<Option<String>> {
+/// A case: error on x, cost on y; `None` where no run came to its end, or none was counted.
+pub(super) fn case(results: &Results, cost: Cost) -> anyhow::Result<Option<String>> {
     let lines = lines(results);
-    let best = pareto(results);
-    let point = |row: &Row| Some((row.error?.max(LEAST), row.ns_total?));
+    let best = pareto(results, cost);
+    let point = |row: &Row| Some((row.error?.max(LEAST), cost.of(row)?));
     let drawn = || lines.iter().flat_map(|line| line.rows.iter().filter_map(|row| point(row)));
     if drawn().next().is_none() {
         return Ok(None);
@@ -61,12 +71,12 @@ pub(super) fn case(results: &Results) -> anyhow::Result<Option<String>> {
                 .y_label_area_size(64)
                 .build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale()),
         )?;
-        mesh(&mut chart, &format!("error, {}", case.unit), "time to the end, ns")?;
+        mesh(&mut chart, &format!("error, {}", case.unit), cost.title())?;
         floors(&mut chart, results, &ys)?;
         for line in &lines {
-            draw(&mut chart, line, &best)?;
+            draw(&mut chart, line, &best, cost)?;
         }
-        staircase(&mut chart, &best, xs.end)?;
+        staircase(&mut chart, &best, xs.end, cost)?;
         legend(&right, &lines)
     })?;
     Ok(Some(svg))
@@ -85,10 +95,12 @@ fn lines(results: &Results) -> Vec<Line<'_>> {
             methods.push(&row.method);
         }
         let color = colour(methods.len() - 1);
-        let name = format!("{} {}", row.method, row.precision);
-        match lines.last_mut().filter(|line| line.name == name) {
+        let same = |line: &&mut Line<'_>| line.method == row.method && line.precision == row.precision;
+        match lines.last_mut().filter(same) {
             Some(line) => line.rows.push(row),
-            None => lines.push(Line { name, color, precision: row.precision, rows: vec![row] }),
+            None => {
+                lines.push(Line { method: &row.method, color, precision: row.precision, rows: vec![row] });
+            }
         }
     }
     lines
@@ -143,15 +155,15 @@ fn floors(chart: &mut Chart<'_, '_>, results: &Results, ys: &std::ops::Range<f64
 }
 
 /// A line with a marker per step: full for `f64`, hollow for `f32`; pale where another run is better in both.
-fn draw(chart: &mut Chart<'_, '_>, line: &Line<'_>, best: &[&Row]) -> anyhow::Result<()> {
+fn draw(chart: &mut Chart<'_, '_>, line: &Line<'_>, best: &[&Row], cost: Cost) -> anyhow::Result<()> {
     let single = line.precision == "f32";
     let width = if single { 1 } else { 2 };
     let points: Vec<_> =
-        line.rows.iter().filter_map(|row| Some((*row, row.error?.max(LEAST), row.ns_total?))).collect();
+        line.rows.iter().filter_map(|row| Some((*row, row.error?.max(LEAST), cost.of(row)?))).collect();
     let style = line.color.mix(0.45).stroke_width(width);
     // A gap in the middle is not bridged.
-    for part in line.rows.split(|row| row.error.is_none() || row.ns_total.is_none()) {
-        let part = part.iter().filter_map(|row| Some((row.error?.max(LEAST), row.ns_total?)));
+    for part in line.rows.split(|row| row.error.is_none() || cost.of(row).is_none()) {
+        let part = part.iter().filter_map(|row| Some((row.error?.max(LEAST), cost.of(row)?)));
         plot(chart.draw_series(LineSeries::new(part, style)))?;
     }
     let marker = |(row, x, y): &(&Row, f64, f64)| {
@@ -164,11 +176,11 @@ fn draw(chart: &mut Chart<'_, '_>, line: &Line<'_>, best: &[&Row]) -> anyhow::Re
 }
 
 /// What no run beats: for each time the least error reached by then.
-fn staircase(chart: &mut Chart<'_, '_>, best: &[&Row], most: f64) -> anyhow::Result<()> {
+fn staircase(chart: &mut Chart<'_, '_>, best: &[&Row], most: f64, cost: Cost) -> anyhow::Result<()> {
     let mut steps = Vec::new();
     let mut from = most;
     for row in best {
-        if let (Some(error), Some(ns)) = (row.error, row.ns_total) {
+        if let (Some(error), Some(ns)) = (row.error, cost.of(row)) {
             let error = error.max(LEAST);
             steps.extend([(from, ns), (error, ns)]);
             from = error;
@@ -185,23 +197,27 @@ fn entry_y(k: usize) -> anyhow::Result<i32> {
 
 /// Names beside the curves, with the order observed.
 fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, lines: &[Line<'_>]) -> anyhow::Result<()> {
-    let entry = |k: usize, name: &str, color: RGBAColor, hollow: bool| -> anyhow::Result<()> {
+    let entry = |k: usize, name: String, color: RGBColor, width: u32, marker: Option<ShapeStyle>| {
         let y = entry_y(k)?;
-        plot(
-            area.draw(&PathElement::new([(4, y), (28, y)], color.stroke_width(if hollow { 1 } else { 2 }))),
-        )?;
-        let style = if hollow { color.stroke_width(1) } else { color.filled() };
-        plot(area.draw(&Circle::new((16, y), 3, style)))?;
-        plot(area.draw(&Text::new(name.to_owned(), (36, y - 6), ("sans-serif", 13))))
+        plot(area.draw(&PathElement::new([(4, y), (28, y)], color.stroke_width(width))))?;
+        marker.map_or(Ok(()), |style| plot(area.draw(&Circle::new((16, y), 3, style))))?;
+        plot(area.draw(&Text::new(name, (36, y - 6), ("sans-serif", 13))))
     };
-    for (k, line) in lines.iter().enumerate() {
-        let order = line.rows.iter().find_map(|row| row.order).filter(|_| line.precision == "f64");
-        let order = order.map_or_else(String::new, |order| format!(", order {order:.2}"));
-        entry(k, &format!("{}{order}", line.name), line.color.to_rgba(), line.precision == "f32")?;
+    let mut methods: Vec<&Line<'_>> = Vec::new();
+    for line in lines {
+        if methods.iter().all(|other| other.method != line.method) {
+            methods.push(line);
+        }
     }
-    let y = entry_y(lines.len())?;
-    plot(area.draw(&PathElement::new([(4, y), (28, y)], BLACK.stroke_width(1))))?;
-    plot(area.draw(&Text::new("not beaten by any run at any width", (36, y - 6), ("sans-serif", 13))))
+    for (k, line) in methods.iter().enumerate() {
+        let order = line.rows.iter().find_map(|row| row.order);
+        let order = order.map_or_else(String::new, |order| format!(", order {order:.2}"));
+        entry(k, format!("{}{order}", line.method), line.color, 2, Some(line.color.filled()))?;
+    }
+    let below = methods.len();
+    entry(below, "f64".to_owned(), GREY, 2, Some(GREY.filled()))?;
+    entry(below + 1, "f32".to_owned(), GREY, 1, Some(GREY.stroke_width(1)))?;
+    entry(below + 2, "not beaten by any run at any width".to_owned(), BLACK, 1, None)
 }
 
 /// Profiles at one error: the share of cases a method solves within τ times the best time, over τ.

@@ -56,7 +56,7 @@ const ENCOUNTERS: Methods =
     each([AtLeast(0.01), AtMost(2e-4), Order(2.0), Order(2.0), AtMost(2e-9), Order(4.0)]);
 
 const fn held(integrator: Integrator, solver: Solver, substeps: u32, expect: Expect) -> (Method, Expect) {
-    (Method { integrator, solver: Some(solver), substeps }, expect)
+    (Method { integrator, solver: Some(solver), substeps, stiffness: None }, expect)
 }
 
 type Joined = [(Method, Expect); 8];

@@ -22,7 +22,7 @@ const PITCH_M: f64 = 4e-5;
 const RADIUS_M: f64 = 1e-5;
 
 /// Steps of A6.
-const LIMIT_STEPS: u32 = 1000;
+pub(super) const LIMIT_STEPS: u32 = 1000;
 /// Shares of the longest stable step.
 const SHARES: [f64; 4] = [0.5, 0.9, 0.99, 1.01];
 
@@ -65,6 +65,8 @@ pub struct Row {
     pub h: f64,
     /// Rounds per step.
     pub substeps: u32,
+    /// Of soft contacts, hz·h; null for the default or where there are none.
+    pub stiffness: Option<f64>,
     /// The scalar.
     pub precision: &'static str,
     /// Numbers per vector.
@@ -83,6 +85,10 @@ pub struct Row {
     pub target: String,
     /// Was it met? null where it says nothing of this row's precision, or a quick sweep stops before it could tell.
     pub met: Option<bool>,
+    /// Counted by callgrind, per step and copy; null where nothing was counted.
+    pub instructions_per_step: Option<f64>,
+    /// That times the steps to the horizon.
+    pub instructions_total: Option<f64>,
     /// Of all windows.
     #[serde(skip)]
     pub median_ns_per_step: Option<f64>,
@@ -113,9 +119,7 @@ impl Results {
 /// # Errors
 /// A scene that cannot be run, widths that differ in a bit.
 pub fn measure(case: &'static Case, effort: Effort) -> anyhow::Result<Results> {
-    let scene = case.scene()?;
-    let reference = case.reference(&scene);
-    let bench = Bench { case, effort, timed: crowd(&scene), scene, reference };
+    let bench = Bench::of(case, effort)?;
     let mut rows = Vec::new();
     for &(method, expect) in case.methods {
         bench.method(method, expect, &mut rows)?;
@@ -179,25 +183,36 @@ pub fn observe(case: &'static Case) -> anyhow::Result<Vec<Observed>> {
 }
 
 /// A case under measurement.
-struct Bench {
-    case: &'static Case,
+pub(super) struct Bench {
+    pub(super) case: &'static Case,
     effort: Effort,
     scene: Scene,
     /// The scene that is timed, and how many copies of the case it holds.
-    timed: (Scene, usize),
+    pub(super) timed: (Scene, usize),
     reference: Reference,
 }
 
 /// A step, and how many of it.
 #[derive(Clone, Copy)]
-struct Pace {
-    h_secs: f64,
-    steps: u32,
+pub(super) struct Pace {
+    pub(super) h_secs: f64,
+    pub(super) steps: u32,
     /// Of the longest stable step, where the sweep is one of limits.
     share: f64,
 }
 
 impl Bench {
+    pub(super) fn of(case: &'static Case, effort: Effort) -> anyhow::Result<Self> {
+        let scene = case.scene()?;
+        let reference = case.reference(&scene);
+        Ok(Self { case, effort, timed: crowd(&scene), scene, reference })
+    }
+
+    /// The settings of a method; lanes and precision are those of `settings`.
+    pub(super) fn settings(&self, method: Method, settings: Settings) -> Settings {
+        method.settings(Settings { continuous: self.case.is_contact(), ..settings })
+    }
+
     fn method(&self, method: Method, expect: Expect, rows: &mut Vec<Row>) -> anyhow::Result<()> {
         let paces = self.paces(method);
         let mut order = None;
@@ -205,9 +220,7 @@ impl Bench {
         for precision in [Precision::F64, Precision::F32] {
             let mut errors = Vec::new();
             for (k, lanes) in self.effort.widths(precision).into_iter().enumerate() {
-                let continuous = self.case.is_contact();
-                let settings = Settings { lanes, precision, continuous, ..Settings::default() };
-                let settings = method.settings(settings);
+                let settings = self.settings(method, Settings { lanes, precision, ..Settings::default() });
                 let found: Vec<_> =
                     paces.iter().map(|&pace| self.error(settings, pace)).collect::<Result<_, _>>()?;
                 if k == 0 {
@@ -235,7 +248,7 @@ impl Bench {
         }
     }
 
-    fn paces(&self, method: Method) -> Vec<Pace> {
+    pub(super) fn paces(&self, method: Method) -> Vec<Pace> {
         match self.case.sweep {
             Sweep::Halvings { coarsest, quick, full } => {
                 let halvings = if self.effort.quick { quick } else { full };
@@ -286,14 +299,21 @@ impl Bench {
         Ok(Some(worst).filter(|error| error.is_finite()))
     }
 
+    /// Steps of a window: all where what is to be done changes on the way, as bodies fall and come to rest.
+    fn window(&self, pace: Pace) -> u32 {
+        if self.case.is_mix() { pace.steps } else { pace.steps.min(self.effort.window) }
+    }
+
     /// The fastest and the median window, ns per step and copy; `None` where a window did not stay finite.
     fn time(&self, settings: Settings, pace: Pace) -> anyhow::Result<Option<[f64; 2]>> {
         let (scene, copies) = &self.timed;
         let fresh = simulate(scene, Settings { dt_secs: pace.h_secs, ..settings })?;
-        let steps = pace.steps.min(self.effort.window);
+        let steps = self.window(pace);
         let mut samples = Vec::new();
+        // Whole runs are long enough by twos.
+        let repeats = if self.case.is_mix() { self.effort.repeats / 2 } else { self.effort.repeats };
         // The first window warms up.
-        for window in 0..=self.effort.repeats {
+        for window in 0..=repeats {
             let mut world = fresh.duplicate();
             let Some(ns) = window_ns(world.as_mut(), pace.h_secs, steps) else { return Ok(None) };
             if window > 0 {
@@ -334,6 +354,7 @@ impl Line<'_> {
             solver: method.solver.map(crate::settings::Solver::name),
             h: pace.h_secs,
             substeps: method.substeps,
+            stiffness: method.stiffness,
             precision: settings.precision.name(),
             lanes: settings.lanes,
             error,
@@ -343,6 +364,8 @@ impl Line<'_> {
             order: self.order.map(|order| order.order),
             target: self.target(pace),
             met: self.met(pace, error, finest),
+            instructions_per_step: None,
+            instructions_total: None,
             median_ns_per_step: time.map(|ns| ns[1]),
         })
     }

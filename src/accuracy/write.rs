@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::json;
 
-use super::best::{Fastest, LEVELS, profiles};
+use super::best::{Cost, Fastest, LEVELS, profiles};
 use super::plot;
 use super::sweep::{Results, Row};
 use crate::report::Machine;
@@ -19,6 +19,7 @@ struct CsvRow<'a> {
     solver: Option<&'a str>,
     h: f64,
     substeps: u32,
+    stiffness: Option<f64>,
     precision: &'a str,
     lanes: usize,
     error: Option<f64>,
@@ -29,6 +30,8 @@ struct CsvRow<'a> {
     order: Option<f64>,
     target: &'a str,
     met: Option<bool>,
+    instructions_per_step: Option<f64>,
+    instructions_total: Option<f64>,
 }
 
 impl<'a> From<&'a Row> for CsvRow<'a> {
@@ -40,6 +43,7 @@ impl<'a> From<&'a Row> for CsvRow<'a> {
             solver: row.solver,
             h: row.h,
             substeps: row.substeps,
+            stiffness: row.stiffness,
             precision: row.precision,
             lanes: row.lanes,
             error: row.error,
@@ -50,11 +54,13 @@ impl<'a> From<&'a Row> for CsvRow<'a> {
             order: row.order,
             target: &row.target,
             met: row.met,
+            instructions_per_step: row.instructions_per_step,
+            instructions_total: row.instructions_total,
         }
     }
 }
 
-/// Writes one CSV, JSON and SVG for a case.
+/// Writes one CSV, JSON and SVG for a case, and another SVG where instructions were counted.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -75,8 +81,10 @@ pub fn case(results: &Results, folder: &Path) -> anyhow::Result<()> {
         "rows": results.rows,
     });
     std::fs::write(path("json"), serde_json::to_string_pretty(&document)?)?;
-    if let Some(svg) = plot::case(results)? {
-        std::fs::write(path("svg"), svg)?;
+    for (cost, ending) in [(Cost::Time, "svg"), (Cost::Instructions, "instructions.svg")] {
+        if let Some(svg) = plot::case(results, cost)? {
+            std::fs::write(path(ending), svg)?;
+        }
     }
     Ok(())
 }
@@ -86,7 +94,7 @@ pub fn case(results: &Results, folder: &Path) -> anyhow::Result<()> {
 /// # Errors
 /// A drawing that cannot be made.
 pub fn drawing(results: &Results) -> anyhow::Result<Option<String>> {
-    plot::case(results)
+    plot::case(results, Cost::Time)
 }
 
 /// Writes what is said of all cases together: the fastest at each error, and a profile at each.

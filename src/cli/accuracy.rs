@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
+use lamina2d::accuracy::answers::{answers, mix_lines};
 use lamina2d::accuracy::{
-    CASES, Effort, FAILING, Fastest, Line, Results, Row, chosen, contact, lines, measure, write,
+    CASES, Effort, FAILING, Fastest, Line, Results, Row, chosen, contact, instructions, lines, measure, write,
 };
 use lamina2d::report::Record;
 use serde_json::{Value, json};
@@ -13,6 +14,7 @@ use super::{output, refuse};
 
 /// Arguments of `lamina accuracy`.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct Args {
     /// Only these cases; all where none is named.
     #[arg(value_name = "CASE")]
@@ -26,8 +28,14 @@ pub(crate) struct Args {
     /// Where each case's CSV, JSON and SVG go.
     #[arg(long, value_name = "DIR", default_value = "reports/latest/accuracy")]
     out: PathBuf,
+    /// Count instructions too, under valgrind (Debian: apt-get install valgrind), at the usual lane widths.
+    #[arg(long)]
+    instructions: bool,
+    /// Run the windows that valgrind counts, and nothing else.
+    #[arg(long, hide = true)]
+    counted_windows: bool,
     /// List the cases, and those that cannot run.
-    #[arg(long, conflicts_with_all = ["quick", "out"])]
+    #[arg(long, conflicts_with_all = ["quick", "out", "instructions"])]
     list: bool,
 }
 
@@ -35,32 +43,50 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     if args.list {
         return list(args.json);
     }
-    let cases = chosen(&args.cases).map_err(refuse)?;
+    let cases = chosen(&args.cases, args.quick).map_err(refuse)?;
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+    if args.counted_windows {
+        return cases.into_iter().try_for_each(|case| instructions::windows(case, effort));
+    }
+    if args.instructions {
+        instructions::check().map_err(refuse)?;
+    }
     std::fs::create_dir_all(&args.out)
         .with_context(|| format!("--out: cannot write into {}", args.out.display()))
         .map_err(refuse)?;
-    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let bar = output::progress(cases.len() as u64, "accuracy");
     let mut all = Vec::new();
     for &case in &cases {
         bar.set_message(case.name);
-        let results = measure(case, effort)?;
+        let mut results = measure(case, effort)?;
+        if args.instructions {
+            instructions::count(&mut results, effort)?;
+        }
         write::case(&results, &args.out)?;
         all.push(results);
         bar.inc(1);
     }
     bar.finish_and_clear();
     write::summary(&all, &args.out)?;
+    let fastest: Vec<_> = all.iter().map(Fastest::of).collect();
+    let verdicts = contact::verdicts(&cases)?;
+    let mixes = mix_lines(&all)?;
+    let answers = answers(&mixes, &fastest);
     if args.json {
         let rows: Vec<&Row> = all.iter().flat_map(|results| &results.rows).collect();
-        let fastest: Vec<_> = all.iter().map(Fastest::of).collect();
-        let verdicts = contact::verdicts(&cases)?;
-        return output::print_json(
-            &json!({"rows": rows, "fastest": fastest, "contact": verdicts, "failing": FAILING}),
-        );
+        return output::print_json(&json!({
+            "rows": rows,
+            "fastest": fastest,
+            "contact": verdicts,
+            "mixes": mixes,
+            "answers": answers,
+            "failing": FAILING,
+        }));
     }
     print(&all)?;
-    print_verdicts(&contact::verdicts(&cases)?)?;
+    print_verdicts(&verdicts)?;
+    output::print_text("")?;
+    answers.iter().try_for_each(|answer| output::print_text(answer))?;
     output::print_text(&format!("\nCurves: {}", args.out.display()))
 }
 

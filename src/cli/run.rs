@@ -63,6 +63,9 @@ pub(crate) struct Args {
     /// Give each island as many substeps as keep its contacts from sagging by more than this, metres.
     #[arg(long, allow_hyphen_values = true)]
     max_sag: Option<f64>,
+    /// Stiffness of soft contacts: their frequency as a share of the substep rate, over 0 up to 0.5 [default: 0.18].
+    #[arg(long, allow_hyphen_values = true)]
+    stiffness: Option<f64>,
     /// Record the run into this file.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -146,6 +149,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         continuous: asked.continuous && !args.no_continuous,
         sleep: args.sleep || asked.sleep,
         max_sag: args.max_sag.or(asked.max_sag),
+        stiffness: args.stiffness.or(asked.stiffness),
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -217,8 +221,8 @@ fn describe(
                 );
                 map["error"]["case"] = json!(case);
             }
-            if let Some(max_sag) = settings.max_sag {
-                map.insert("max_sag".to_owned(), json!(max_sag));
+            for (name, asked) in [("max_sag", settings.max_sag), ("stiffness", settings.stiffness)] {
+                map.extend(asked.map(|asked| (name.to_owned(), json!(asked))));
             }
             Ok(map)
         }

@@ -92,13 +92,23 @@ fn print(answer: &Answer) -> anyhow::Result<()> {
             run.solver.map_or_else(|| "–".to_owned(), |solver| solver.to_string()),
             format!("1/{:.0}", 1.0 / run.h),
             run.substeps.to_string(),
+            run.stiffness.map_or_else(|| "–".to_owned(), |stiffness| stiffness.to_string()),
             run.precision.to_string(),
             run.error.map_or_else(|| "not finite".to_owned(), |error| format!("{error:.2e}")),
             format!("{:.4}", run.ns_per_simulated_second * 1e-6),
         ]
     };
     let error = format!("error, {unit}");
-    let header = ["integrator", "solver", "h, s", "substeps", "precision", &error, "ms per simulated second"];
+    let header = [
+        "integrator",
+        "solver",
+        "h, s",
+        "substeps",
+        "stiffness",
+        "precision",
+        &error,
+        "ms per simulated second",
+    ];
     output::print_text(&output::table(&header, answer.best.iter().map(row)))?;
     let Answer { tried, too_slow, not_tried, .. } = answer;
     output::print_text(&format!(

@@ -5,6 +5,7 @@ mod case;
 pub mod chaos;
 pub mod elliptic;
 pub mod kepler;
+pub mod momentum;
 pub mod ode;
 mod overlap;
 pub mod residual;
@@ -23,7 +24,7 @@ use crate::settings::Skip;
 use crate::solve::Traits;
 
 pub use case::case_error;
-pub use overlap::{Outline, Penetration, penetration};
+pub use overlap::{Outline, Penetration, depths, penetration};
 pub use state::{Invariants, first_non_finite, hash_of, invariants, non_finite_in, state_hash};
 
 /// The stages of a step, in order.

@@ -29,10 +29,18 @@ pub struct Penetration {
 
 /// The overlaps of all pairs of which at least one can move.
 pub fn penetration(outlines: &[Outline]) -> Penetration {
+    let depths = depths(outlines);
+    let (max, sum) = depths.iter().fold((0.0f64, 0.0), |(max, sum), depth| (max.max(*depth), sum + depth));
+    let pairs = depths.len();
+    Penetration { max, mean: if pairs == 0 { 0.0 } else { sum / pairs as f64 }, pairs }
+}
+
+/// How deep each pair overlaps that does and of which at least one can move, metres, in no particular order.
+pub fn depths(outlines: &[Outline]) -> Vec<f64> {
     let bounds: Vec<[f64; 4]> = outlines.iter().map(bounds).collect();
     let mut order: Vec<usize> = (0..outlines.len()).collect();
     order.sort_by(|&a, &b| bounds[a][0].total_cmp(&bounds[b][0]));
-    let (mut max, mut sum, mut pairs) = (0.0f64, 0.0, 0);
+    let mut depths = Vec::new();
     for (k, &a) in order.iter().enumerate() {
         for &b in order[k + 1..].iter().take_while(|&&b| bounds[b][0] <= bounds[a][2]) {
             let apart = bounds[a][1] > bounds[b][3] || bounds[b][1] > bounds[a][3];
@@ -41,13 +49,11 @@ pub fn penetration(outlines: &[Outline]) -> Penetration {
             }
             let depth = -separation(&outlines[a], &outlines[b]);
             if depth > 0.0 {
-                max = max.max(depth);
-                sum += depth;
-                pairs += 1;
+                depths.push(depth);
             }
         }
     }
-    Penetration { max, mean: if pairs == 0 { 0.0 } else { sum / pairs as f64 }, pairs }
+    depths
 }
 
 /// Left, bottom, right, top.

@@ -225,6 +225,7 @@ impl Data {
             Table::of(&self.accuracy.lines)?,
             Table::of(&self.accuracy.contact)?,
             Table::of(&self.accuracy.fastest)?,
+            Table::of(&self.accuracy.mixes)?,
             Table::of(&self.contacts)?,
             Table::of(&self.lanes)?,
             Table::of(&self.skips)?,

@@ -3,7 +3,8 @@
 use askama::Template;
 
 use super::plots::Plot;
-use super::{Data, Machine, Table};
+use super::{Data, Machine, Record, Table};
+use crate::accuracy::answers::MixLine;
 
 /// A part of the page: what it is about, then its plots and tables.
 struct Group {
@@ -32,9 +33,8 @@ const GROUPS: &[Group] = &[
     Group {
         title: "Accuracy",
         intro: "What error a microsecond buys: every case with a closed form or a converged reference, every integrator \
-                and step. Down and to the left is better; the line of steps is what no other run beats. At 1e-2 schemes \
-                of order 2 are fastest on most cases, from 1e-4 down Runge and Kutta's on nearly all, and Yoshida's where forces \
-                depend on places alone; f32 ends near 1e-6, whatever the scheme.",
+                and step, every solver, number of substeps and stiffness. Down and to the left is better; the line of steps \
+                is what no other run beats.",
         plots: &[
             "accuracy_oscillator.svg",
             "accuracy_quadratic_drop.svg",
@@ -42,8 +42,29 @@ const GROUPS: &[Group] = &[
             "accuracy_magnetic.svg",
             "accuracy_pendulum.svg",
             "accuracy_arenstorf.svg",
+            "accuracy_sliding_block.svg",
+            "accuracy_bouncing_ball.svg",
+            "accuracy_billiard.svg",
+            "accuracy_stack_forces.svg",
+            "accuracy_chain.svg",
         ],
         tables: &["fastest", "contact_targets", "accuracy"],
+    },
+    Group {
+        title: "Shape mixes",
+        intro: "No course of a pile can be told for long: what can be is how deep bodies overlap, what momentum is lost, \
+                and how well contacts obey their laws.",
+        plots: &[
+            "accuracy_circles.svg",
+            "accuracy_circles_polygons.svg",
+            "accuracy_polygons.svg",
+            "accuracy_all.svg",
+            "accuracy_circles_momentum.svg",
+            "accuracy_circles_polygons_momentum.svg",
+            "accuracy_polygons_momentum.svg",
+            "accuracy_all_momentum.svg",
+        ],
+        tables: &["mixes"],
     },
     Group {
         title: "Peers",
@@ -113,6 +134,8 @@ struct Section<'a> {
     /// Of its heading, for links.
     anchor: String,
     intro: &'static str,
+    /// What its rows answer, in sentences.
+    answers: &'a [String],
     plots: Vec<Drawing<'a>>,
     tables: Vec<&'a Table>,
 }
@@ -156,6 +179,7 @@ impl<'a> Page<'a> {
                 title: group.title,
                 anchor: group.title.to_lowercase().replace([' ', '\''], "-"),
                 intro: group.intro,
+                answers: if group.tables.contains(&MixLine::NAME) { &data.accuracy.answers } else { &[] },
                 plots: plots.map(drawing).collect(),
                 tables: group
                     .tables

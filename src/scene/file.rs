@@ -83,6 +83,7 @@ struct FileSettings {
     continuous: Option<bool>,
     sleep: Option<bool>,
     max_sag: Option<f64>,
+    stiffness: Option<f64>,
 }
 
 /// Reads a scene file and the settings it asks for (defaults elsewhere).
@@ -120,6 +121,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         continuous: asked.continuous.unwrap_or(default.continuous),
         sleep: asked.sleep.unwrap_or(default.sleep),
         max_sag: asked.max_sag,
+        stiffness: asked.stiffness,
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
     let steps = asked.steps.unwrap_or(600);

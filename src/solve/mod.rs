@@ -121,6 +121,8 @@ pub struct Task<'a, R> {
     pub traits: Traits,
     /// Seconds per step.
     pub dt_secs: f64,
+    /// Of soft contacts, hz·h.
+    pub stiffness: f64,
     /// How bodies move.
     pub plan: &'a Plan<'a, R>,
 }

@@ -1,7 +1,7 @@
 //! Substeps per island: hard piles get more, quiet ones fewer.
 //!
-//! A contact that carries N sags by s ≈ N/(m_eff·ω²), ω = 2π·hz with hz·h = [`HERTZ_TIMES_SUBSTEP`]: of n substeps in a
-//! step of dt, by (N/m_eff)·dt²/(n²·(2π·0.18)²). With a bound on the sag each island has the n its hardest contact asks for.
+//! A contact that carries N sags by s ≈ N/(m_eff·ω²), ω = 2π·hz with hz·h the stiffness: of n substeps in a
+//! step of dt, by (N/m_eff)·dt²/(n²·(2π·hz·h)²). With a bound on the sag each island has the n its hardest contact asks for.
 //!
 //! * Every [`LOOK_STEPS`] steps loads are read from the impulses, and at once where contacts come or go islands are
 //!   joined anew: what touches has one pace, the highest of its parts.
@@ -18,7 +18,6 @@
 use std::ops::Range;
 
 use super::constraint::Constraint;
-use super::soft::HERTZ_TIMES_SUBSTEP;
 use super::stream::{Ends, Visit};
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
@@ -43,12 +42,14 @@ pub struct Goal {
     pub base: u32,
     /// Seconds per step.
     pub dt_secs: f64,
+    /// Of contacts, hz·h.
+    pub stiffness: f64,
 }
 
 impl Goal {
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.
     fn needed(&self, load: f64) -> f64 {
-        let omega_h = 2.0 * std::f64::consts::PI * HERTZ_TIMES_SUBSTEP;
+        let omega_h = 2.0 * std::f64::consts::PI * self.stiffness;
         (load * self.dt_secs / (omega_h * omega_h * self.max_sag)).sqrt()
     }
 }

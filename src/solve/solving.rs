@@ -282,7 +282,7 @@ impl<L: Lanes> Solving<L> {
                 stream.visit(&mut soft::Push {
                     rows,
                     moved,
-                    soft: Softness::new(h_secs, soft::HERTZ_TIMES_SUBSTEP / h_secs, soft::DAMPING, cap),
+                    soft: Softness::new(h_secs, task.stiffness / h_secs, soft::DAMPING, cap),
                     share: L::lit(share),
                     per_share: L::lit(1.0 / share),
                 });

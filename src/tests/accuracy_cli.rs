@@ -9,13 +9,14 @@ use common_cli::{folder, lamina};
 use lamina2d::accuracy::{CASES, FAILING};
 use serde_json::Value;
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 18] = [
     "case",
     "method",
     "integrator",
     "solver",
     "h",
     "substeps",
+    "stiffness",
     "precision",
     "lanes",
     "error",
@@ -25,6 +26,8 @@ const KEYS: [&str; 15] = [
     "order",
     "target",
     "met",
+    "instructions_per_step",
+    "instructions_total",
 ];
 
 fn rows(document: &Value) -> &Vec<Value> {
@@ -55,6 +58,7 @@ fn rows_have_these_keys_and_two_runs_the_same_errors() {
         }
         assert!(a["error"].is_null() == a["ns_total"].is_null(), "a gap has neither error nor time: {a}");
         assert!(a["ns_per_step"].is_null() || a["ns_per_step"].as_f64().unwrap() > 0.0);
+        assert!(a["instructions_total"].is_null(), "nothing was asked to be counted: {a}");
         assert_ne!(a["met"], false, "{a}");
     }
     for case in cases {
@@ -65,6 +69,56 @@ fn rows_have_these_keys_and_two_runs_the_same_errors() {
     }
     assert_eq!(first["fastest"].as_array().unwrap().len(), cases.len());
     assert_eq!(first["failing"].as_array().unwrap().len(), FAILING.len());
+}
+
+/// Counted instructions: the same twice, about as many per step at half the step, and more for the scheme of four stages. A row
+/// without an error has none. Where there is no valgrind, a sentence.
+#[test]
+fn instructions_are_counted_or_it_says_what_is_missing() {
+    let folder = folder();
+    let out = folder.path().to_str().unwrap();
+    let arguments = ["accuracy", "a02_linear_drag", "--quick", "--instructions", "--json", "--out", out];
+    if std::process::Command::new("valgrind").arg("--version").output().is_err() {
+        lamina(&arguments).fails(2, &["--instructions", "valgrind", "apt-get install"]);
+        return;
+    }
+    let [first, second] = [(); 2].map(|()| {
+        let answer = lamina(&arguments);
+        assert_eq!(answer.code, Some(0), "{answer:#?}");
+        serde_json::from_str::<Value>(&answer.out).unwrap()
+    });
+    let counts = |document: &Value, method: &str| -> Vec<f64> {
+        let own = rows(document).iter().filter(|row| row["method"] == method && row["precision"] == "f32");
+        own.map(|row| row["instructions_per_step"].as_f64().unwrap()).collect()
+    };
+    for method in ["semi_implicit_euler", "rk4"] {
+        assert_eq!(counts(&first, method), counts(&second, method));
+    }
+    let [euler, rk4] = ["semi_implicit_euler", "rk4"].map(|method| counts(&first, method));
+    assert!(euler.iter().zip(&rk4).all(|(euler, rk4)| euler > &1.0 && rk4 > euler), "{euler:?} {rk4:?}");
+    assert!(euler.iter().all(|count| (count / euler[0] - 1.0).abs() < 0.5), "{euler:?}");
+    assert!(folder.path().join("a02_linear_drag.instructions.svg").exists());
+}
+
+/// What a mix is asked, and what the rows answer.
+#[test]
+fn a_mix_is_answered_in_sentences() {
+    let (_folder, document) = quick(&["m_circles_penetration", "m_circles_momentum"]);
+    let mix = &document["mixes"][0];
+    assert_eq!(mix["mix"], "circles");
+    let number = |field: &str| mix[field].as_f64().unwrap();
+    assert!((1e-4..1e-2).contains(&number("penetration")), "{mix}");
+    assert!(number("momentum") < 1e-4, "{mix}");
+    assert!(number("growth_per_sec") > 1.0, "a pile is chaotic: {mix}");
+    let answers = document["answers"].as_array().unwrap();
+    for part in
+        ["Shapes change accuracy", "in a pile", "Cheapest at an overlap of 1e-2 diameters: circles with"]
+    {
+        assert!(
+            answers.iter().any(|answer| answer.as_str().unwrap().contains(part)),
+            "no '{part}' in {answers:?}"
+        );
+    }
 }
 
 /// The table of a run that is not JSON, and that what the folder holds is what was printed.

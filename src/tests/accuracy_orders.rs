@@ -9,7 +9,7 @@ use lamina2d::accuracy::{CASES, Expect, MIN_HALVINGS, Observed, TOLERANCE, chose
 
 /// Runs a case and holds every method to what is expected of it.
 fn hold(name: &str) -> Vec<Observed> {
-    let case = chosen(&[name.to_owned()]).unwrap()[0];
+    let case = chosen(&[name.to_owned()], false).unwrap()[0];
     let all = observe(case).unwrap();
     for observed in &all {
         let Observed { method, expect, errors, order, .. } = observed;

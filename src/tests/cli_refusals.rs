@@ -170,6 +170,9 @@ fn a_bad_setting_in_a_file_is_refused_with_the_file() {
         ("lanes = 3", &["lanes", "got 3"]),
         ("lanes = 8\nprecision = 'f64'", &["lanes", "1 or 4", "f64", "got 8"]),
         ("max_sag = 0", &["max-sag", "got 0"]),
+        ("stiffness = 0", &["stiffness", "got 0"]),
+        ("stiffness = 0.6", &["stiffness", "at most 0.5", "got 0.6"]),
+        ("stiffness = 0.1\nsolver = 'avbd'", &["stiffness", "soft", "avbd"]),
         ("skip = 'work'", &["skip", "'work'", "closed_form"]),
     ];
     for (line, mentions) in table {

@@ -53,6 +53,7 @@ fn settings_named(settings: &Settings) -> Vec<(&'static str, String)> {
             "max sag",
             settings.max_sag.map_or_else(|| "unbounded".to_owned(), |sag| format!("{} m", number(sag))),
         ),
+        ("contact stiffness", number(settings.contact_stiffness())),
         ("step", format!("{} s", number(settings.dt_secs))),
         ("broad phase", settings.broad.to_string()),
         ("precision", settings.precision.to_string()),

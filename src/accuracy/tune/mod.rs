@@ -23,6 +23,8 @@ pub use metric::Metric;
 const RATES: [u32; 6] = [30, 60, 120, 240, 480, 960];
 /// Rounds per step that are tried where bodies touch or are joined.
 const SUBSTEPS: [u32; 6] = [1, 2, 4, 8, 16, 32];
+/// Stiffnesses of soft contacts that are tried beside the default, hz·h.
+const STIFFNESSES: [Option<f64>; 3] = [None, Some(0.09), Some(0.25)];
 /// A candidate is left out if it must take so many times as long as the best.
 const TOO_SLOW: f64 = 2.5;
 /// Candidates that are timed again.
@@ -56,6 +58,8 @@ pub struct Tried {
     pub h: f64,
     /// Rounds per step.
     pub substeps: u32,
+    /// Of soft contacts, hz·h; null for the default or where there are none.
+    pub stiffness: Option<f64>,
     /// The scalar.
     pub precision: Precision,
     /// In the metric's unit; null where the run ended in a state that is not finite.
@@ -97,6 +101,7 @@ struct Candidate {
     solver: Option<Solver>,
     rate: u32,
     substeps: u32,
+    stiffness: Option<f64>,
     precision: Precision,
 }
 
@@ -108,6 +113,7 @@ impl Candidate {
             integrator: self.integrator,
             solver: self.solver.unwrap_or(default.solver),
             substeps: self.substeps,
+            stiffness: self.stiffness,
             ..default.with_precision(self.precision)
         }
     }
@@ -132,18 +138,21 @@ impl Candidate {
 
 fn candidates(held: bool) -> Vec<Candidate> {
     let (solvers, substeps): (Vec<_>, &[u32]) = if held {
-        (Solver::ALL.iter().map(|solver| Some(*solver)).collect(), &SUBSTEPS)
+        let stiffnesses = |solver: Solver| if solver == Solver::Soft { &STIFFNESSES[..] } else { &[None] };
+        let of =
+            |&solver: &Solver| stiffnesses(solver).iter().map(move |&stiffness| (Some(solver), stiffness));
+        (Solver::ALL.iter().flat_map(of).collect(), &SUBSTEPS)
     } else {
         // Rounds of free motion are shorter steps.
-        (vec![None], &SUBSTEPS[..1])
+        (vec![(None, None)], &SUBSTEPS[..1])
     };
     let mut all = Vec::new();
     for &integrator in Integrator::ALL {
-        for &solver in &solvers {
+        for &(solver, stiffness) in &solvers {
             for rate in RATES {
                 for &substeps in substeps {
                     for precision in [Precision::F32, Precision::F64] {
-                        all.push(Candidate { integrator, solver, rate, substeps, precision });
+                        all.push(Candidate { integrator, solver, rate, substeps, stiffness, precision });
                     }
                 }
             }
@@ -251,6 +260,7 @@ fn run(scene: &Scene, question: &Question, candidate: &Candidate, judge: &Judge)
         solver: candidate.solver,
         h: settings.dt_secs,
         substeps: candidate.substeps,
+        stiffness: candidate.stiffness,
         precision: candidate.precision,
         error,
         ns_per_simulated_second: taken.as_nanos() as f64 / horizon_secs,
@@ -260,8 +270,9 @@ fn run(scene: &Scene, question: &Question, candidate: &Candidate, judge: &Judge)
 
 fn command(question: &Question, candidate: &Candidate, settings: &Settings, steps: u32) -> String {
     let solver = candidate.solver.map_or_else(String::new, |solver| format!(" --solver {solver}"));
+    let stiffness = candidate.stiffness.map_or_else(String::new, |share| format!(" --stiffness {share}"));
     format!(
-        "lamina run {} --steps {steps} --dt {} --integrator {}{solver} --substeps {} --precision {}",
+        "lamina run {} --steps {steps} --dt {} --integrator {}{solver} --substeps {}{stiffness} --precision {}",
         question.given, settings.dt_secs, settings.integrator, settings.substeps, settings.precision
     )
 }
