@@ -139,13 +139,10 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             let half = L::select(parts.two_points, L::lit(0.5), zero);
             arms[0] + (arms[1] - arms[0]) * half
         };
-        // A gap's point lies midway: once closed, each body is rubbed at its own surface.
+        // A gap's point lies midway: once closed, each body is rubbed at its own surface. Where one of two points has
+        // closed there is no gap: levers of the mean took 1e-3 of a pile's momentum.
         let [first, second] = [parts.gap[0], parts.gap[1]];
-        let gap = if POINTS == 1 {
-            first
-        } else {
-            first + L::select(parts.two_points, second - first, zero) * L::lit(0.5)
-        };
+        let gap = if POINTS == 1 { first } else { L::select(parts.two_points, first.min(second), first) };
         let half_gap = zero.max(gap) * L::lit(0.5);
         let [to_a, to_b] = levers(middle, tangent);
         let tangent_levers = [to_a - half_gap, to_b + half_gap];
@@ -204,7 +201,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         if ends.fresh {
             return;
         }
-        let change = self.change_by(moved, ends);
+        let change = self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
         for k in 0..POINTS {
             self.points[k].separation = self.points[k].separation + change[k];
         }
