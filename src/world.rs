@@ -332,7 +332,7 @@ impl<L: Lanes> World<L> {
         }
         let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
-        let warm = solving.begin(task, bodies, &mut self.narrow.manifolds, motion);
+        let warm = solving.begin(task, bodies, &self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);
         let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
         for pace in 0..self.solving.paces().count() {

@@ -67,12 +67,16 @@ pub struct NoteApproach<'a, L: Lanes> {
     pub rows: &'a [[L::Elem; 4]],
     /// Accelerations at the step's beginning per slot: x, y (m/s²), angular.
     pub accelerations: &'a [[L::Elem; 4]],
+    /// Displacement of the last substep per slot; `None` where gaps are up to date.
+    pub moved: Option<&'a [[L::Elem; 4]]>,
     /// Slower approaches do not bounce, m/s.
     pub threshold: L,
     /// The step, seconds.
     pub dt_secs: L,
     /// Where to.
     pub bounces: &'a mut Bounces<L>,
+    /// Is anything noted?
+    pub any: bool,
 }
 
 impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
@@ -83,14 +87,21 @@ impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
         let (pull_a, pull_b) = sides(self.accelerations);
         let (speeds, pulls) = (Normals::begin(c, &a, &b), Normals::begin(c, &pull_a, &pull_b));
         let zero = L::zero();
-        for (point, noted) in c.points.iter().zip(self.bounces.at::<POINTS>(at)) {
-            let (speed, pull) = (speeds.velocity(point), pulls.velocity(point));
-            let meets = zero.max(speed * speed - L::lit(2.0) * (pull * point.separation)).sqrt();
+        let gaps = gaps(c, &ends, self.moved.filter(|_| !ends.fresh));
+        for ((point, gap), noted) in c.points.iter().zip(gaps).zip(self.bounces.at::<POINTS>(at)) {
+            let speed = speeds.velocity(point);
             // What it carried, if anything, is not what stops it: it has yet to meet.
             let meeting = point.held.lt(L::lit(-0.5) * speed);
             let bounces = speed.lt(-self.threshold) & meeting & zero.lt(point.mass);
+            if !bounces.any() {
+                noted.begins = zero;
+                continue;
+            }
+            self.any = true;
+            let pull = pulls.velocity(point);
+            let meets = zero.max(speed * speed - L::lit(2.0) * (pull * gap)).sqrt();
             let closing = L::select(bounces, meets - speed, L::one());
-            let until = L::lit(2.0) * zero.max(point.separation) / closing;
+            let until = L::lit(2.0) * zero.max(gap) / closing;
             // Later than this step it meets only if others hold it up, as fast as it is.
             let meets = L::select(until.le(self.dt_secs), meets, -speed);
             let begins = L::select(bounces, c.restitution * meets, zero);

@@ -70,7 +70,9 @@ pub struct Solving<L: Lanes> {
     last_joint_h_secs: f64,
     joint_scale: f64,
     latest: Latest,
-    /// Something may bounce in this step.
+    /// Bodies were fast enough to bounce as this step began: their approaches were looked at.
+    lively: bool,
+    /// Something bounces in this step.
     bouncing: bool,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
@@ -97,6 +99,7 @@ impl<L: Lanes> Default for Solving<L> {
             last_joint_h_secs: 0.0,
             joint_scale: 1.0,
             latest: Latest::default(),
+            lively: false,
             bouncing: false,
             until_summed: 0,
         }
@@ -224,29 +227,17 @@ impl<L: Lanes> Solving<L> {
         &mut self,
         task: &Task<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
+        manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> Warm {
         let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
         self.scale = if last > 0.0 { h / last } else { 1.0 };
-        let bounced = self.bouncing;
-        self.bouncing = task.traits.restitution && pushes(task.solver) && motion.lively;
-        if self.bouncing {
-            self.hand_back(manifolds, motion);
-            self.follow_pairs(task, manifolds, motion);
-            motion.load::<L>(task.plan, bodies);
-            self.bounces.resize(self.stream.batches());
-            self.stream.visit(&mut bounce::NoteApproach {
-                rows: motion.velocity.fours(),
-                accelerations: motion.acceleration.fours(),
-                threshold: L::lit(task.bounce_threshold()),
-                dt_secs: L::lit(task.dt_secs),
-                bounces: &mut self.bounces,
-            });
-        }
+        let lively = task.traits.restitution && pushes(task.solver) && motion.lively;
+        let was_lively = std::mem::replace(&mut self.lively, lively);
+        self.bouncing = lively && self.note_approaches(task, bodies, manifolds, motion);
         let carries = carries_impulses(task.solver);
-        // Joints are placed anew in each step.
-        let settled = self.joints.is_empty() && !bounced && !self.bouncing && h == last;
+        // Joints are placed anew in each step; where approaches were looked at the rows are theirs.
+        let settled = self.joints.is_empty() && !was_lively && !lively && h == last;
         if carries && settled && self.until_summed > 0 {
             self.until_summed -= 1;
             return Warm::Carried;
@@ -259,6 +250,30 @@ impl<L: Lanes> Solving<L> {
             self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.scale) });
         }
         Warm::Summed
+    }
+
+    /// Notes how what approaches will part; says whether anything does.
+    fn note_approaches(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) -> bool {
+        self.follow_pairs(task, manifolds, motion);
+        motion.load::<L>(task.plan, bodies);
+        self.bounces.resize(self.stream.batches());
+        let mut pass = bounce::NoteApproach {
+            rows: motion.velocity.fours(),
+            accelerations: motion.acceleration.fours(),
+            moved: self.latest.yet_to_follow(motion),
+            threshold: L::lit(task.bounce_threshold()),
+            dt_secs: L::lit(task.dt_secs),
+            bounces: &mut self.bounces,
+            any: false,
+        };
+        self.stream.visit(&mut pass);
+        pass.any
     }
 
     /// Joints, then contacts of one substep, before bodies move.
@@ -384,7 +399,7 @@ impl<L: Lanes> Solving<L> {
     fn bounce(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
         let Self { displaced, stream, bounces, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours_mut());
-        displaced.clear();
+        // Left as zeros by the bounces before.
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
         let before = (!settled).then_some(&*moved);
         let touch = L::lit(task.traits.touch());
@@ -398,8 +413,10 @@ impl<L: Lanes> Solving<L> {
             stream.visit(&mut Follow { moved: displaced });
         }
         for (moved, displaced) in moved.iter_mut().zip(displaced) {
-            for (way, change) in moved.iter_mut().zip(displaced).take(3) {
-                *way += *change;
+            for (way, change) in
+                moved.iter_mut().zip(std::mem::replace(displaced, [L::Elem::ZERO; 4])).take(3)
+            {
+                *way += change;
             }
         }
         true
