@@ -141,6 +141,9 @@ pub fn answers(lines: &[MixLine], fastest: &[Fastest]) -> Vec<String> {
 
 /// Do shapes change accuracy?
 fn shapes(lines: &[MixLine]) -> Option<String> {
+    if lines.len() < 2 {
+        return None;
+    }
     let by = |of: &dyn Fn(&MixLine) -> Option<f64>| {
         let mut values: Vec<(f64, &str)> =
             lines.iter().filter_map(|line| Some((of(line)?, line.mix))).collect();

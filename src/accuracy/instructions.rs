@@ -101,8 +101,10 @@ pub fn check() -> anyhow::Result<()> {
 
 fn run(case: &str, effort: Effort, folder: &Path) -> anyhow::Result<()> {
     let mut command = Command::new("valgrind");
-    command.args(["--tool=callgrind", "--collect-atstart=no", "--toggle-collect=*counted_window*"]);
-    command.arg("--dump-after=*counted_window*");
+    // In full: of two patterns callgrind heeds the first.
+    let window = concat!(module_path!(), "::counted_window");
+    command.args(["--tool=callgrind", "--collect-atstart=no"]);
+    command.args([format!("--toggle-collect={window}"), format!("--dump-after={window}")]);
     command.arg(format!("--callgrind-out-file={}", folder.join("window").display()));
     command.arg(std::env::current_exe()?).args(["accuracy", case, "--counted-windows"]);
     if effort.quick {

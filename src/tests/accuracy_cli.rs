@@ -103,7 +103,7 @@ fn instructions_are_counted_or_it_says_what_is_missing() {
 /// What a mix is asked, and what the rows answer.
 #[test]
 fn a_mix_is_answered_in_sentences() {
-    let (_folder, document) = quick(&["m_circles_penetration", "m_circles_momentum"]);
+    let (_folder, document) = quick(&["m_circles_penetration", "m_circles_momentum", "m_all_penetration"]);
     let mix = &document["mixes"][0];
     assert_eq!(mix["mix"], "circles");
     let number = |field: &str| mix[field].as_f64().unwrap();
@@ -111,9 +111,11 @@ fn a_mix_is_answered_in_sentences() {
     assert!(number("momentum") < 1e-4, "{mix}");
     assert!(number("growth_per_sec") > 1.0, "a pile is chaotic: {mix}");
     let answers = document["answers"].as_array().unwrap();
-    for part in
-        ["Shapes change accuracy", "in a pile", "Cheapest at an overlap of 1e-2 diameters: circles with"]
-    {
+    for part in [
+        "Shapes change accuracy",
+        "costlier integrator",
+        "Cheapest at an overlap of 1e-2 diameters: circles with",
+    ] {
         assert!(
             answers.iter().any(|answer| answer.as_str().unwrap().contains(part)),
             "no '{part}' in {answers:?}"

@@ -68,6 +68,7 @@ table! {
         b04_slipping_disc,
         b05_slide_to_roll,
         b10_bounces,
+        b10_rest,
         b11_elastic_ball,
         b12_head_on,
         b12_head_on_boxes,
@@ -75,6 +76,7 @@ table! {
         b14_rod_hit,
         b16_box_billiard,
         b17_cradle_gaps,
+        b17_cradle_touching,
         b18_stack,
         b18_offset,
         b21_overhang,
@@ -95,12 +97,8 @@ table! {
         // their ends as to their faces, and is thrown back by an end: it does not go round from 1.3 times the height.
         b08_loop_sliding <= 0.31,
         b08_loop_rolling <= 0.31,
-        // 1e-4: of order 1 in the step, as rest is seen at a step's end; 1.1e-2 at 1/60 s, 5.5e-2 when slow bounces were
-        // dropped.
-        b10_rest <= 4e-4,
-        // 1e-6: neither law holds. Discs that touch hand on the push that stops the first, so that 2 and 3 go on together
-        // as Newton's law has it, but the bounce is the first pair's alone: (-0.17, 0.58, 0.58).
-        b17_cradle_touching <= 0.51,
+        // 1e-6: discs that touch hand on the push that stops the first, so that 2 and 3 go on together as Newton's law has
+        // it, but the bounce is the first pair's alone: (-0.17, 0.58, 0.58).
         b17_cradle_at_once <= 0.17,
         // 1e-3: of order 1 in the step and the same at any number of substeps, as points are found once per step; and what
         // the corner sags by as it takes over, g·10 µm, is 1e-3 of the 0.135 J/kg there are.

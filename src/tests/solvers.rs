@@ -47,6 +47,23 @@ fn a_stack_of_ten_stands() {
     }
 }
 
+/// A soft contact sags by N/(m·ω²): with the inverse square of its stiffness.
+#[test]
+fn softer_contacts_sag_as_springs_do() {
+    let sag = |stiffness: Option<f64>| {
+        let settings = Settings { stiffness, ..of(Solver::Soft) };
+        let mut world = start(&named("stack/2"), settings);
+        run(&mut *world, 600);
+        world.penetration().max
+    };
+    let usual = sag(None);
+    assert_eq!(sag(Some(0.18)).to_bits(), usual.to_bits(), "named or not");
+    for stiffness in [0.06, 0.09, 0.12, 0.25] {
+        let (found, wanted) = (sag(Some(stiffness)) / usual, (0.18f64 / stiffness).powi(2));
+        assert!((found / wanted - 1.0).abs() < 0.02, "{stiffness}: {found} times, for {wanted}");
+    }
+}
+
 /// Where the others fall through: a thousand times the mass of the body that carries it.
 #[test]
 fn avbd_carries_heavy_bodies() {
