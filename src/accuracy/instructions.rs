@@ -1,7 +1,7 @@
 //! Instructions, counted by callgrind: the axis of time that says the same on every run.
 //!
 //! The program runs itself under valgrind, once per case. Each row at the usual lane width is one call of
-//! [`counted_window`]: callgrind collects from its entry to its exit, and writes down what it has there.
+//! `counted_window`: callgrind collects from its entry to its exit, and writes down what it has there.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
