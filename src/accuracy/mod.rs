@@ -17,8 +17,8 @@
 //! | [`write`](mod@write) | CSV, JSON and SVG into a folder |
 //!
 //! # Method and bias
-//! - Errors come from runs of the scene itself, one at each lane width, which must agree to the bit. They say the same
-//!   digits on every run and machine.
+//! - Errors come from runs of the scene itself, at the usual lane width; the other widths run the longest step too, and
+//!   must agree to the bit. They say the same digits on every run and machine.
 //! - Times come from other runs: the minimum and the median of windows of whole steps ([`crate::world::World::step`]).
 //!   A scene of one body without joints is timed as a crowd of [`sweep::CROWD`] copies that never meet, side by side
 //!   within a millimetre, and the time divided by them: a single body would show the fixed cost of a step, not that

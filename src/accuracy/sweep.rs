@@ -221,12 +221,17 @@ impl Bench {
             let mut errors = Vec::new();
             for (k, lanes) in self.effort.widths(precision).into_iter().enumerate() {
                 let settings = self.settings(method, Settings { lanes, precision, ..Settings::default() });
-                let found: Vec<_> =
-                    paces.iter().map(|&pace| self.error(settings, pace)).collect::<Result<_, _>>()?;
                 if k == 0 {
-                    errors = found;
+                    errors =
+                        paces.iter().map(|&pace| self.error(settings, pace)).collect::<Result<_, _>>()?;
                 } else {
-                    ensure!(found == errors, "{}: {method} at {lanes} lanes has other bits", self.case.name);
+                    // Widths agree to the bit, or all else here is wrong: seen once each, on the longest steps.
+                    let found = self.error(settings, paces[0])?;
+                    ensure!(
+                        Some(&found) == errors.first(),
+                        "{}: {method} at {lanes} lanes has other bits",
+                        self.case.name
+                    );
                 }
                 if k == 0 && precision == Precision::F64 {
                     order = self.order(&paces, &errors);
