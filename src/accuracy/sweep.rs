@@ -31,6 +31,8 @@ const SHARES: [f64; 4] = [0.5, 0.9, 0.99, 1.01];
 pub struct Effort {
     /// Fewer steps and the usual lane widths alone.
     pub quick: bool,
+    /// A full sweep's steps for the mixes, of which a quick one has a single one: two make a line.
+    pub mixes: bool,
     /// Windows timed per row.
     pub repeats: u32,
     /// Steps per window, at most.
@@ -39,9 +41,11 @@ pub struct Effort {
 
 impl Effort {
     /// Under half an hour.
-    pub const FULL: Self = Self { quick: false, repeats: 7, window: 200 };
+    pub const FULL: Self = Self { quick: false, mixes: true, repeats: 7, window: 200 };
     /// Under three minutes.
-    pub const QUICK: Self = Self { quick: true, repeats: 4, window: 60 };
+    pub const QUICK: Self = Self { quick: true, mixes: false, repeats: 4, window: 60 };
+    /// A quick one with lines for the mixes that are drawn.
+    pub const REPORT: Self = Self { mixes: true, ..Self::QUICK };
 
     /// Lane widths that are run.
     fn widths(self, precision: Precision) -> Vec<usize> {
@@ -248,15 +252,20 @@ impl Bench {
     /// Does the sweep go down to the shortest steps, which expectations speak of?
     fn is_whole(&self) -> bool {
         match self.case.sweep {
-            Sweep::Halvings { quick, full, .. } => !self.effort.quick || quick == full,
+            Sweep::Halvings { quick, full, .. } => self.halvings(quick, full) == full,
             Sweep::Limits { .. } => true,
         }
+    }
+
+    fn halvings(&self, quick: u32, full: u32) -> u32 {
+        let short = self.effort.quick && !(self.effort.mixes && self.case.is_mix());
+        if short { quick } else { full }
     }
 
     pub(super) fn paces(&self, method: Method) -> Vec<Pace> {
         match self.case.sweep {
             Sweep::Halvings { coarsest, quick, full } => {
-                let halvings = if self.effort.quick { quick } else { full };
+                let halvings = self.halvings(quick, full);
                 let of = |k| {
                     let steps = coarsest << k;
                     Pace { h_secs: self.case.horizon_secs / f64::from(steps), steps, share: 0.0 }

@@ -64,7 +64,8 @@ pub fn run() -> anyhow::Result<Accuracy> {
     let mut all = Vec::new();
     let cases = chosen(&[], true)?;
     for &case in &cases {
-        let results = measure(case, Effort::QUICK)?;
+        let drawn = DRAWN.iter().any(|(name, _)| *name == case.name);
+        let results = measure(case, if drawn { Effort::REPORT } else { Effort::QUICK })?;
         accuracy.lines.extend(lines(&results));
         accuracy.fastest.push(Fastest::of(&results));
         accuracy.drawings.extend(draw(&results)?);
