@@ -8,13 +8,15 @@
 //! Hot columns, read or written each step: position 2, attitude 2, velocity 3, inverse mass and inertia
 //! 2, extents 2, bounding radius 1, core 1, friction 1, restitution 1: 15 reals = 60 B in f32 (120 B in f64).
 //! Cold, 23 B: kind 1, shape form 1, shape start 4, generation 4, filter 12 (category, collides-with,
-//! dynamic), flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), a polygon's
+//! dynamic), flags 1. Only where some body needs them: constant force and torque 3 reals (12 B), what positions are beyond
+//! a real 4 reals (16 B), a polygon's
 //! vertices and normals in both frames: 8 rows of 8 (256 B in f32), beside vertex
 //! count 1 and owner 4; a driven body's drive 72.
 //! Rejected: mass beside inverse mass (8 B that no kernel reads); an angle beside the unit complex
 //! number (4 B and a trigonometric call wherever it is used).
 
 mod check;
+mod fine;
 mod grow;
 mod kind;
 mod polygons;
@@ -30,6 +32,7 @@ use crate::vec2::Rot;
 
 pub use check::BodyError;
 use check::Checker;
+pub(crate) use fine::fine_difference;
 pub use polygons::{HullRows, Polygons};
 
 /// A body's stable name: slot and generation.
@@ -114,6 +117,9 @@ pub struct Bodies<R: Real> {
     pub restitution: Column<R>,
     /// Constant force and torque per body (N, N, N·m), where some body has one.
     pub force: Option<[Column<R>; 3]>,
+    /// Rows of four per slot: what the centroid is beyond its columns, x and y, metres, –, –; only with
+    /// [`Settings::positions`](crate::settings::Settings::positions) finer than the scalar.
+    pub fine: Option<Column<R>>,
     /// Vertices of polygons.
     pub polygons: Polygons<R>,
     form: Vec<Form>,
@@ -157,6 +163,7 @@ impl<R: Real> Bodies<R> {
             friction: zero(),
             restitution: zero(),
             force: None,
+            fine: None,
             polygons: Polygons::default(),
             form: Vec::new(),
             kind: Vec::new(),
@@ -292,6 +299,7 @@ impl<R: Real> Bodies<R> {
         ] {
             column[slot] = R::from_f64(value);
         }
+        self.set_place(slot, centroid.into());
         self.form[slot] = form;
         self.kind[slot] = spec.kind;
         self.filter[slot] = Filter { category: spec.category, collides_with: spec.collides_with, dynamic };

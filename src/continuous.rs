@@ -98,7 +98,13 @@ impl<R: Real> Continuous<R> {
                 // The finite check names it.
                 continue;
             }
-            let reach = Reach::new(skin_m, margin > R::ZERO, bodies.core[slot].to_f64(), &sweep, R::EPSILON);
+            let reach = Reach::new(
+                skin_m,
+                margin > R::ZERO,
+                bodies.core[slot].to_f64(),
+                &sweep,
+                bodies.place_epsilon(),
+            );
             let mut first: Option<(f64, Sweep)> = None;
             for (&other, wall) in self.obstacles.iter().zip(&self.walls) {
                 if !sweep.may_meet(&wall.sweep, &reach) || wall.keeps_clear(&sweep, &reach) {
@@ -115,7 +121,7 @@ impl<R: Real> Continuous<R> {
                 }
             }
             if let Some((t, obstacle)) = first {
-                put(bodies, fast, t, &obstacle);
+                put(bodies, fast, sweep.x, t, &obstacle);
                 stirred[slot] = true;
             }
         }
@@ -123,14 +129,14 @@ impl<R: Real> Continuous<R> {
 }
 
 /// Puts a body where it was at the share `t` of its step; what it met there takes it along for the rest.
-fn put<R: Real>(bodies: &mut Bodies<R>, fast: &Fast<R>, t: f64, met: &Sweep) {
+fn put<R: Real>(bodies: &mut Bodies<R>, fast: &Fast<R>, from: DVec2, t: f64, met: &Sweep) {
     let slot = fast.slot as usize;
-    let [x, y, c, s] = fast.start;
+    let [.., c, s] = fast.start;
     let [dx, dy, angle] = fast.moved.map(|moved| moved.to_f64() * t);
-    let (at, rest) = (DVec2::new(x.to_f64() + dx, y.to_f64() + dy), 1.0 - t);
+    let (at, rest) = (from + DVec2::new(dx, dy), 1.0 - t);
     let (carried, turn) = (met.carry(at, t), met.angle * rest);
     let rot = Rot { c, s }.turned(R::from_f64(angle + turn));
-    (bodies.x[slot], bodies.y[slot]) = (R::from_f64(carried.x), R::from_f64(carried.y));
+    bodies.set_place(slot, carried.into());
     (bodies.c[slot], bodies.s[slot]) = (rot.c, rot.s);
 }
 
@@ -150,9 +156,9 @@ struct Reach {
 }
 
 impl Reach {
-    fn new<R: Real>(skin_m: f64, hears_of_gaps: bool, core: f64, sweep: &Sweep, epsilon: R) -> Self {
+    fn new(skin_m: f64, hears_of_gaps: bool, core: f64, sweep: &Sweep, epsilon: f64) -> Self {
         let coordinate = sweep.x.abs().max_element() + sweep.moved.abs().max_element();
-        let skin = skin_m.min(core / 50.0).max(16.0 * epsilon.to_f64() * coordinate);
+        let skin = skin_m.min(core / 50.0).max(16.0 * epsilon * coordinate);
         let (touching, target) = if hears_of_gaps { (2.0 * skin, 0.5 * skin) } else { (0.0, -skin) };
         let tolerance = 0.25 * skin;
         Self { touching, target, tolerance, clear: target.min(-tolerance), core }
@@ -188,14 +194,20 @@ impl Sweep {
         let [x, y, c, s] = fast.start.map(R::to_f64);
         let [dx, dy, angle] = fast.moved.map(R::to_f64);
         let still = Self::shape(bodies, fast.slot as usize);
+        let [x, y] = if bodies.fine.is_some() {
+            let [x, y] = bodies.place(fast.slot as usize);
+            [x - dx, y - dy]
+        } else {
+            [x, y]
+        };
         Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, ..still }
     }
 
     /// The poses of obstacles are those at the step's end: a kinematic one came there by its velocity.
     fn of_obstacle<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
-        let [x, y, c, s, vx, vy, w] =
-            [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w]
-                .map(|column| column[slot].to_f64());
+        let [x, y] = bodies.place(slot);
+        let [c, s, vx, vy, w] =
+            [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].map(|column| column[slot].to_f64());
         let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
         let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
         Self { x, rot, moved, angle, ..Self::shape(bodies, slot) }

@@ -64,9 +64,9 @@ impl Drive {
         let turn = Rot::from_angle(self.turned_rad);
         let target = self.pivot + turn.apply(self.arm);
         // Rounded like the position: a body that is where it should be gets no velocity at all.
-        let chord = |target: f64, x: R| R::from_f64((R::from_f64(target).to_f64() - x.to_f64()) / dt_secs);
-        bodies.vx[at] = chord(target.x, bodies.x[at]);
-        bodies.vy[at] = chord(target.y, bodies.y[at]);
+        let [x, y] = bodies.place(at);
+        let chord = |target: f64, now: f64| R::from_f64((bodies.rounded(target) - now) / dt_secs);
+        [bodies.vx[at], bodies.vy[at]] = [chord(target.x, x), chord(target.y, y)];
         let now = Rot { c: bodies.c[at].to_f64(), s: bodies.s[at].to_f64() };
         let missing = now.then(Rot::from_angle(ahead_rad % TAU)).relative(self.rotation.then(turn));
         bodies.w[at] = R::from_f64(self.angular_velocity + missing.s / dt_secs);

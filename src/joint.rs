@@ -284,6 +284,7 @@ impl<R: Real> Joints<R> {
 /// Centroid and attitude of a body in `f64`.
 fn pose<R: Real>(bodies: &Bodies<R>, slot: usize) -> (Vec2<f64>, Rot<f64>) {
     let read = |value: R| value.to_f64();
-    let at = Vec2::new(read(bodies.x[slot]), read(bodies.y[slot]));
+    let [x, y] = bodies.place(slot);
+    let at = Vec2::new(x, y);
     (at, Rot { c: read(bodies.c[slot]), s: read(bodies.s[slot]) })
 }

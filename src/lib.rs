@@ -130,6 +130,8 @@ pub mod settings;
 pub mod shape;
 pub mod simulation;
 pub mod solve;
+#[cfg(feature = "cli")]
+pub mod stress;
 pub mod thesis;
 pub mod vec2;
 pub mod world;

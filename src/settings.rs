@@ -230,6 +230,19 @@ pub enum SettingsError {
     /// A share of the substep rate.
     #[error("stiffness must be over 0 and at most 0.5, got {0:?}")]
     Stiffness(f64),
+    /// Positions are not coarser than the scalar.
+    #[error("positions must be f64 with f64, got f32")]
+    Positions,
+    /// A bound of the watchdog is a positive number.
+    #[error("{name} must be positive and finite, got {given:?} {unit}")]
+    Bound {
+        /// `max-speed` or `max-gain`.
+        name: &'static str,
+        /// What was given.
+        given: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
     /// Only one solver's contacts are springs.
     #[error("stiffness needs the solver soft, got {0}")]
     StiffnessSolver(Solver),
@@ -279,6 +292,16 @@ pub struct Settings {
     /// [`MOST_STIFF`]; `None` for [`crate::solve::soft::HERTZ_TIMES_SUBSTEP`], the stiffest that stays calm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
+    /// What centroids are kept in: `f64` with a scalar of `f32` keeps what their columns leave out; see
+    /// [`crate::body::Bodies::fine`]. `None`: the scalar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub positions: Option<Precision>,
+    /// A step that ends with a dynamic body faster than this, m/s, is refused; see [`crate::world`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_speed: Option<f64>,
+    /// A step that ends with so much more kinetic and potential energy than there was, J, is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_gain: Option<f64>,
 }
 
 /// Half a swing a substep: beyond, a spring turns faster than substeps can see.
@@ -299,6 +322,9 @@ impl Default for Settings {
             sleep: false,
             max_sag: None,
             stiffness: None,
+            positions: None,
+            max_speed: None,
+            max_gain: None,
         }
     }
 }
@@ -320,6 +346,11 @@ impl Settings {
             Precision::F64 => 4,
         };
         Self { lanes, precision, ..self }
+    }
+
+    /// Are positions kept in more digits than the scalar has?
+    pub fn is_fine(&self) -> bool {
+        self.precision == Precision::F32 && self.positions == Some(Precision::F64)
     }
 
     /// The stiffness of soft contacts, hz·h.
@@ -349,6 +380,14 @@ impl Settings {
             }
             if self.solver != Solver::Soft {
                 return Err(SettingsError::MaxSagSolver(self.solver));
+            }
+        }
+        if (self.precision, self.positions) == (Precision::F64, Some(Precision::F32)) {
+            return Err(SettingsError::Positions);
+        }
+        for (name, bound, unit) in [("max-speed", self.max_speed, "m/s"), ("max-gain", self.max_gain, "J")] {
+            if let Some(given) = bound.filter(|bound| !(*bound > 0.0 && bound.is_finite())) {
+                return Err(SettingsError::Bound { name, given, unit });
             }
         }
         if let Some(stiffness) = self.stiffness {

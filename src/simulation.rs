@@ -187,7 +187,7 @@ impl IntoWorld for (Bodies<f64>, Joints<f64>) {
 /// The state of the body in a slot.
 fn state<R: Real>(bodies: &Bodies<R>, slot: usize) -> BodyState {
     BodyState {
-        position: [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()],
+        position: bodies.place(slot),
         rotation: [bodies.c[slot].to_f64(), bodies.s[slot].to_f64()],
         velocity: [bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64()],
         angular_velocity: bodies.w[slot].to_f64(),
@@ -258,7 +258,7 @@ where
     fn outlines(&self) -> Vec<Outline> {
         let bodies = self.bodies();
         let outline = |slot: usize| {
-            let centre = [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()];
+            let centre = bodies.place(slot);
             let disc = bodies.form(slot) == Form::Circle;
             Outline {
                 centre,

@@ -186,7 +186,7 @@ impl<L: Lanes> Rot<L> {
 /// Range reduction θ = k·π/2 + r, |r| ≤ π/4, with π/2 in three parts (Cody and Waite, 1980), then the
 /// Taylor series of both on r, which converge to round-off there in [`Real::TRIG_TERMS`] terms.
 /// Only + − × and comparisons: no platform trigonometry, no fused operation. Lanes with |θ| beyond 10⁴
-/// lose digits gradually, as the argument itself does.
+/// lose digits gradually, as the argument itself does, down to an attitude that is arbitrary.
 #[inline(always)]
 pub fn sin_cos<L: Lanes>(theta: L) -> (L, L) {
     let quarter = L::lit(std::f64::consts::FRAC_PI_4);
@@ -199,6 +199,8 @@ pub fn sin_cos<L: Lanes>(theta: L) -> (L, L) {
     let k = (theta * L::lit(std::f64::consts::FRAC_2_PI)).round_small();
     let k = L::select(inside, L::zero(), k);
     let r = ((theta - k * p0) - k * p1) - k * p2;
+    // Angles whose neighbours are turns apart: any attitude will do that is one. What is no number stays so.
+    let r = L::select(L::one().lt(r.abs()), L::zero(), r);
     let (sin_r, cos_r) = taylor(r);
     // The quadrant k mod 4 as a number: ⌊k/4⌋ is the nearest integer to k/4 − 3/8.
     let quadrant = k - L::lit(4.0) * (k * L::lit(0.25) - L::lit(0.375)).round_small();

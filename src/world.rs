@@ -3,6 +3,7 @@
 mod access;
 mod sleep;
 mod snapshot;
+mod watchdog;
 
 use std::time::Instant;
 
@@ -21,7 +22,10 @@ use crate::settings::{Precision, Settings, SettingsError, Skip};
 use crate::solve::pace::Goal;
 use crate::solve::{self, Solving, Task, Traits};
 
+use watchdog::Watchdog;
+
 pub use snapshot::{BodyEntry, BodyTable, COLUMNS, Snapshot};
+pub use watchdog::EVERY as WATCHED_EVERY;
 
 /// A step that could not be taken to its end.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -38,6 +42,41 @@ pub enum StepError {
         /// What it holds.
         value: f64,
         /// Where it first was so: the integrator or the solver.
+        stage: Stage,
+    },
+    /// A body is faster than [`Settings::max_speed`]; the world holds that state.
+    #[error(
+        "step {step}: body in slot {slot} runs away: {speed} m/s is over max-speed = {bound} m/s after {stage}"
+    )]
+    Runaway {
+        /// The step's number, from 1.
+        step: u64,
+        /// The fastest body.
+        slot: usize,
+        /// Its speed, m/s.
+        speed: f64,
+        /// The most it may be.
+        bound: f64,
+        /// What made it so fast: the integrator or the solver.
+        stage: Stage,
+    },
+    /// There is more energy over the beginning than [`Settings::max_gain`]; the world holds that state.
+    #[error(
+        "step {step}: energy has grown by {gain} J, over max-gain = {bound} J; its {term} part grew most in slot {slot}, \
+         after {stage}"
+    )]
+    Gain {
+        /// The step's number, from 1; looked at each [`WATCHED_EVERY`]th.
+        step: u64,
+        /// The body whose energy grew most since the last look.
+        slot: usize,
+        /// Gained since the account began, J.
+        gain: f64,
+        /// The most it may be.
+        bound: f64,
+        /// `kinetic` or `potential`: what grew more.
+        term: &'static str,
+        /// What moves that body faster than it was predicted to be: the solver, else the integrator.
         stage: Stage,
     },
     /// Steps have a positive, finite length.
@@ -70,6 +109,16 @@ pub enum WorldError {
         /// What was asked for.
         asked: usize,
     },
+}
+
+impl StepError {
+    /// The body it speaks of.
+    pub fn slot(&self) -> Option<usize> {
+        match *self {
+            Self::NonFinite { slot, .. } | Self::Runaway { slot, .. } | Self::Gain { slot, .. } => Some(slot),
+            Self::Dt(_) => None,
+        }
+    }
 }
 
 /// What a step found before bodies move.
@@ -113,6 +162,7 @@ pub struct World<L: Lanes> {
     groupings: u64,
     /// How often other fields were set.
     fields_set: u64,
+    watchdog: Watchdog,
     steps: u64,
     /// Since the world began, seconds.
     time_secs: f64,
@@ -155,6 +205,8 @@ impl<L: Lanes> World<L> {
         settings.check()?;
         forces.check_in::<L::Elem>().map_err(SceneError::from)?;
         forces.check_coupling(bodies.len(), &settings).map_err(SceneError::from)?;
+        let mut bodies = bodies;
+        bodies.set_fine(settings.is_fine());
         Ok(Self {
             bodies,
             joints,
@@ -175,6 +227,7 @@ impl<L: Lanes> World<L> {
             regrouped: false,
             groupings: 0,
             fields_set: 0,
+            watchdog: Watchdog::default(),
             steps: 0,
             time_secs: 0.0,
             counts: Counts::default(),
@@ -212,6 +265,7 @@ impl<L: Lanes> World<L> {
             return Err(StepError::Dt(dt_secs));
         }
         self.inspect();
+        self.begin_watch();
         self.bodies.drive(dt_secs);
         self.steps += 1;
         let begun_secs = self.time_secs;
@@ -266,6 +320,7 @@ impl<L: Lanes> World<L> {
         self.counts.substeps = paces.unwrap_or([substeps; 2]);
         self.times.steps += 1;
         self.check_finite(finite)?;
+        self.watch(free_flight)?;
         if self.settings.sleep {
             self.doze(dt_secs, seen.changed);
         }
@@ -277,9 +332,10 @@ impl<L: Lanes> World<L> {
     fn find_contacts(&mut self, traits: Traits, dt_secs: L::Elem, clock: &mut Instant) -> Seen {
         let Settings { solver, skips, broad, .. } = self.settings;
         let margin = traits.margin(solver);
+        let reach = margin + self.bodies.grain();
         let keep = skips.has(Skip::PairList);
         let ahead_secs = if self.motion.swift && margin > L::Elem::ZERO { dt_secs } else { L::Elem::ZERO };
-        let found = self.broad.find::<L>(&self.bodies, broad, margin, ahead_secs, keep);
+        let found = self.broad.find::<L>(&self.bodies, broad, reach, ahead_secs, keep);
         self.times.lap(Stage::Broad, clock);
 
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
@@ -404,6 +460,7 @@ impl<L: Lanes> World<L> {
             self.motion.forget_drift();
         }
         self.inspected = Some(seen);
+        self.watchdog.forget();
         self.fields = self.forces.fields();
         if self.bodies.force.is_some() {
             self.fields.insert(0, Field::PerBody);

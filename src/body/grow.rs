@@ -26,9 +26,10 @@ impl<R: Real> Bodies<R> {
             &self.restitution,
         ];
         let force = self.force.iter().flatten().map(Column::bytes).sum::<usize>();
+        let fine = self.fine.as_ref().map_or(0, Column::bytes);
         let rows = self.polygons.owner.len() * (2 * size_of::<HullRows<R>>() + 5);
         let cold = self.len() * (2 + 2 * 4 + size_of::<Filter>() + 1);
-        columns.iter().map(|c| c.bytes()).sum::<usize>() + force + rows + cold + self.drives.bytes()
+        columns.iter().map(|c| c.bytes()).sum::<usize>() + force + fine + rows + cold + self.drives.bytes()
     }
 
     pub(super) fn grow(&mut self) -> usize {
@@ -55,6 +56,7 @@ impl<R: Real> Bodies<R> {
         for column in self.force.iter_mut().flatten() {
             column.resize(slot + 1);
         }
+        self.resize_fine(slot + 1);
         self.form.push(Form::Circle);
         self.kind.push(BodyKind::Static);
         self.shape_start.push(0);
@@ -82,8 +84,7 @@ impl<R: Real> Bodies<R> {
             column[slot] = R::ZERO;
         }
         self.c[slot] = R::ONE;
-        self.x[slot] = R::FAR;
-        self.y[slot] = R::FAR;
+        self.set_place(slot, [R::FAR.to_f64(); 2]);
         self.core[slot] = R::FAR;
         self.form[slot] = Form::Circle;
         self.kind[slot] = BodyKind::Static;

@@ -12,6 +12,7 @@ mod recordings;
 mod report;
 mod run;
 mod scenes;
+mod stress;
 mod tune;
 
 use std::io::Write;
@@ -49,6 +50,8 @@ enum Command {
     Accuracy(accuracy::Args),
     /// Find the cheapest settings that keep a scene's error under a bound.
     Tune(tune::Args),
+    /// Run the cases of stability with every solver, and look for where they break.
+    Stress(stress::Args),
     /// Count instructions of kernels and scenes under valgrind and hold them against those blessed.
     Gate(gate::Args),
     /// Run all experiments into a folder with a page, tables and plots.
@@ -81,6 +84,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Bench(args) => bench::main(&args),
         Command::Determinism(args) => determinism::main(&args),
         Command::Accuracy(args) => accuracy::main(&args),
+        Command::Stress(args) => stress::main(&args),
         Command::Tune(args) => tune::main(&args),
         Command::Gate(args) => gate::main(&args),
         Command::Report(args) => report::main(&args),

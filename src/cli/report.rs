@@ -6,6 +6,7 @@ use anyhow::Context;
 use lamina2d::gate;
 use lamina2d::report::peers::{self, Peers};
 use lamina2d::report::{self, Data, EXPERIMENTS, Experiment, Record, Table, compare, instructions, strip};
+use lamina2d::stress;
 
 use super::{output, refuse};
 
@@ -33,6 +34,9 @@ pub(crate) struct Args {
     /// What lamina gate holds, to be shown; left out where there is no such file.
     #[arg(long, value_name = "FILE", default_value = "reports/instructions.toml")]
     instructions: PathBuf,
+    /// What lamina stress found, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/stress/stress.json")]
+    stress: PathBuf,
     /// Print a JSON summary.
     #[arg(long)]
     json: bool,
@@ -58,8 +62,10 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
             .with_context(|| format!("--out: cannot write into {}", folder.display()))
             .map_err(refuse)?;
     }
-    let (peers, instructions) = beside(args).map_err(refuse)?;
-    let data = Data { peers, instructions, strips: strip::strips()?, ..measure(args.quick, EXPERIMENTS)? };
+    let beside = beside(args).map_err(refuse)?;
+    let Beside { peers, instructions, stress } = beside;
+    let data =
+        Data { peers, instructions, stress, strips: strip::strips()?, ..measure(args.quick, EXPERIMENTS)? };
     for folder in &folders {
         report::write(&data, folder)
             .with_context(|| format!("cannot write the report into {}", folder.display()))?;
@@ -76,12 +82,20 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     output::print_text(&format!("\nPage: {}", args.out.join("index.html").display()))
 }
 
-/// What other programs have measured, where their files are.
-fn beside(args: &Args) -> anyhow::Result<(Option<Peers>, Vec<instructions::Row>)> {
+/// What other programs and commands have measured.
+struct Beside {
+    peers: Option<Peers>,
+    instructions: Vec<instructions::Row>,
+    stress: Vec<stress::Row>,
+}
+
+/// Reads it where its files are.
+fn beside(args: &Args) -> anyhow::Result<Beside> {
     let peers = args.peers.exists().then(|| peers::read(&args.peers)).transpose()?;
     let counts = args.instructions.exists().then(|| gate::baseline(&args.instructions)).transpose()?;
     let last = counts.as_ref().and_then(|counts| counts.baseline.last());
-    Ok((peers, last.map(instructions::rows).unwrap_or_default()))
+    let stress = if args.stress.exists() { stress::write::read(&args.stress)? } else { Vec::new() };
+    Ok(Beside { peers, instructions: last.map(instructions::rows).unwrap_or_default(), stress })
 }
 
 /// The experiments of a list of names.

@@ -66,6 +66,15 @@ pub(crate) struct Args {
     /// Stiffness of soft contacts: their frequency as a share of the substep rate, over 0 up to 0.5 [default: 0.18].
     #[arg(long, allow_hyphen_values = true)]
     stiffness: Option<f64>,
+    /// f64 keeps positions in more digits than a precision of f32 has: for scenes far from the origin.
+    #[arg(long)]
+    positions: Option<Precision>,
+    /// Stop where a body is faster than this, m/s.
+    #[arg(long, allow_hyphen_values = true)]
+    max_speed: Option<f64>,
+    /// Stop where kinetic and potential energy together have grown by more than this, J.
+    #[arg(long, allow_hyphen_values = true)]
+    max_gain: Option<f64>,
     /// Record the run into this file.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -125,10 +134,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
 
 /// Adds the scene, and the body by its number in the scene: the k-th is in slot k + 1.
 fn name_body(scene: &Scene, error: StepError) -> anyhow::Error {
-    let body = match error {
-        StepError::NonFinite { slot, .. } => format!(", body {}", slot - 1),
-        StepError::Dt(_) => String::new(),
-    };
+    let body = error.slot().map_or_else(String::new, |slot| format!(", body {}", slot - 1));
     anyhow::Error::new(error).context(format!("scene {}{body}", scene.name))
 }
 
@@ -150,6 +156,9 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         sleep: args.sleep || asked.sleep,
         max_sag: args.max_sag.or(asked.max_sag),
         stiffness: args.stiffness.or(asked.stiffness),
+        positions: args.positions.or(asked.positions),
+        max_speed: args.max_speed.or(asked.max_speed),
+        max_gain: args.max_gain.or(asked.max_gain),
     };
     settings.check().map_err(refuse)?;
     Ok((scene, settings))
@@ -221,9 +230,15 @@ fn describe(
                 );
                 map["error"]["case"] = json!(case);
             }
-            for (name, asked) in [("max_sag", settings.max_sag), ("stiffness", settings.stiffness)] {
+            for (name, asked) in [
+                ("max_sag", settings.max_sag),
+                ("stiffness", settings.stiffness),
+                ("max_speed", settings.max_speed),
+                ("max_gain", settings.max_gain),
+            ] {
                 map.extend(asked.map(|asked| (name.to_owned(), json!(asked))));
             }
+            map.extend(settings.positions.map(|asked| ("positions".to_owned(), json!(asked))));
             Ok(map)
         }
         _ => unreachable!("an object literal"),

@@ -241,7 +241,9 @@ fn fly_with<L: Lanes, S: Scheme>(
             turn_block(bodies, at, &angle);
             bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
         }
-        store_block(&mut bodies.x, &mut bodies.y, at, &std::array::from_fn(|i| x[i] + moved[i]));
+        for (i, moved) in moved.iter().enumerate() {
+            bodies.move_lanes(at + i, [moved.x, moved.y]);
+        }
         store_block(&mut bodies.vx, &mut bodies.vy, at, &v);
     }
     skipped
@@ -426,9 +428,7 @@ pub fn finish<L: Lanes>(
             for (column, value) in [(&mut bodies.vx, vx), (&mut bodies.vy, vy), (&mut bodies.w, w)] {
                 column.lanes_mut::<L>()[at] = value;
             }
-            for (column, step) in [(&mut bodies.x, moved[0]), (&mut bodies.y, moved[1])] {
-                column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
-            }
+            bodies.move_lanes(at, [moved[0], moved[1]]);
             angle[i] = moved[2];
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
             any_swift |= half_swift.le(speed).bits();

@@ -159,6 +159,12 @@ impl<R: Real> Motion<R> {
         self.free.iter().chain(&self.ahead).all(|column| column[slot].is_finite())
     }
 
+    /// The speed that the scheme predicted for a slot in the last substep, before contacts, m/s.
+    pub fn predicted_speed(&self, slot: usize) -> f64 {
+        let [x, y, _] = &self.free;
+        x[slot].to_f64().hypot(y[slot].to_f64())
+    }
+
     /// Velocities into the solver's rows, and accelerations: what a bounce is reckoned from.
     pub fn load<L: Lanes<Elem = R>>(&mut self, plan: &Plan<'_, R>, bodies: &Bodies<R>) {
         if plan.couples() && L::WIDTH < R::Widest::WIDTH {

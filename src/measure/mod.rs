@@ -25,7 +25,10 @@ use crate::solve::Traits;
 
 pub use case::case_error;
 pub use overlap::{Outline, Penetration, depths, penetration};
-pub use state::{Invariants, first_non_finite, hash_of, invariants, non_finite_in, state_hash};
+pub use state::{
+    Invariants, attraction_energy, first_non_finite, hash_of, invariants, invariants_of, non_finite_in,
+    state_hash,
+};
 
 /// The stages of a step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

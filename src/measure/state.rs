@@ -11,8 +11,11 @@ use crate::lanes::{LaneMask, Lanes, Real};
 
 /// xxh3 (64 bits) over x, y, c, s, vx, vy, w of every living body in slot order, as `f64` bits.
 pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
-    let columns = [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
-    hash_of(columns.into_iter().flat_map(|column| bodies.slots().map(|slot| column[slot].to_f64())))
+    let columns = [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
+    let places = (0..2).flat_map(|k| bodies.slots().map(move |slot| bodies.place(slot)[k]));
+    hash_of(
+        places.chain(columns.into_iter().flat_map(|column| bodies.slots().map(|slot| column[slot].to_f64()))),
+    )
 }
 
 /// xxh3 (64 bits) over the bits of numbers, in their order.
@@ -130,17 +133,37 @@ impl Invariants {
 
 /// Energy and momentum of a world's dynamic bodies.
 pub fn invariants<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> Invariants {
-    let mut sum = Invariants::default();
-    let dynamic = bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO);
-    let placed = |slot: usize| {
-        (1.0 / bodies.inv_mass[slot].to_f64(), [bodies.x[slot].to_f64(), bodies.y[slot].to_f64()])
-    };
-    sum.add_attraction(forces, &dynamic.clone().map(placed));
-    for slot in dynamic {
-        let read = |column: &Column<R>| column[slot].to_f64();
-        let matter = [1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia)];
-        let (at, velocity) = ([read(&bodies.x), read(&bodies.y)], [read(&bodies.vx), read(&bodies.vy)]);
-        sum.add(matter, at, velocity, read(&bodies.w), forces);
+    let mut sum = Invariants { potential_energy: attraction_energy(bodies, forces), ..Invariants::default() };
+    for slot in dynamic(bodies) {
+        sum.add_slot(bodies, forces, slot);
     }
     sum
+}
+
+/// Those of the dynamic body in one slot, attraction left out.
+pub fn invariants_of<R: Real>(bodies: &Bodies<R>, forces: &Forces, slot: usize) -> Invariants {
+    let mut sum = Invariants::default();
+    sum.add_slot(bodies, forces, slot);
+    sum
+}
+
+/// What a world's dynamic bodies attract each other with, J.
+pub fn attraction_energy<R: Real>(bodies: &Bodies<R>, forces: &Forces) -> f64 {
+    let placed = |slot: usize| (1.0 / bodies.inv_mass[slot].to_f64(), bodies.place(slot));
+    let mut sum = Invariants::default();
+    sum.add_attraction(forces, &dynamic(bodies).map(placed));
+    sum.potential_energy
+}
+
+fn dynamic<R: Real>(bodies: &Bodies<R>) -> impl Iterator<Item = usize> + Clone {
+    bodies.slots().filter(|&slot| bodies.inv_mass[slot] > R::ZERO)
+}
+
+impl Invariants {
+    fn add_slot<R: Real>(&mut self, bodies: &Bodies<R>, forces: &Forces, slot: usize) {
+        let read = |column: &Column<R>| column[slot].to_f64();
+        let matter = [1.0 / read(&bodies.inv_mass), 1.0 / read(&bodies.inv_inertia)];
+        let (at, velocity) = (bodies.place(slot), [read(&bodies.vx), read(&bodies.vy)]);
+        self.add(matter, at, velocity, read(&bodies.w), forces);
+    }
 }

@@ -15,7 +15,7 @@ mod circle_polygon;
 mod clip;
 mod polygon_polygon;
 
-use crate::body::{Bodies, Form};
+use crate::body::{Bodies, Form, fine_difference};
 
 use crate::column::{Column, PAD};
 use crate::contact::{Code, Manifolds};
@@ -110,6 +110,9 @@ pub struct Narrow<R: Real> {
     poses: Column<R>,
     /// Rows of four per slot: vx, vy, radius, –; only where a margin looks ahead.
     speeds: Column<R>,
+    /// What centroids are beyond the rows of `poses`; see [`Bodies::fine`].
+    fine: Column<R>,
+    is_fine: bool,
     todo: [Todo; 6],
     /// Slots of the bodies in pairs to look at, where they are few; else all are.
     wanted: Vec<u32>,
@@ -127,6 +130,8 @@ impl<R: Real> Default for Narrow<R> {
         Self {
             poses: Column::new(R::ZERO),
             speeds: Column::new(R::ZERO),
+            fine: Column::new(R::ZERO),
+            is_fine: false,
             todo: Default::default(),
             wanted: Vec::new(),
             is_wanted: Vec::new(),
@@ -197,6 +202,10 @@ impl<R: Real> Narrow<R> {
             return;
         }
         self.write_poses::<L>(bodies);
+        self.is_fine = bodies.fine.is_some();
+        if let Some(rows) = &bodies.fine {
+            self.fine.clone_from(rows);
+        }
         if ahead_secs > R::ZERO {
             self.write_speeds::<L>(bodies);
         }
@@ -303,6 +312,7 @@ impl<R: Real> Narrow<R> {
             let places = &todo.place[at..at + L::WIDTH];
             let a = Pose::gather(self.poses.rows(), slots[0]);
             let b = Pose::gather(self.poses.rows(), slots[1]);
+            let (a, b) = if self.is_fine { self.seen_from_a(a, b, slots) } else { (a, b) };
             let margin = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
             let found = collide(&a, &b, slots, margin);
             if found.hits[0].any() {
@@ -312,6 +322,19 @@ impl<R: Real> Narrow<R> {
             }
             at += L::WIDTH;
         }
+    }
+
+    /// Positions finer than their columns: A is the origin.
+    #[inline(always)]
+    fn seen_from_a<L: Lanes<Elem = R>>(
+        &self,
+        a: Pose<L>,
+        b: Pose<L>,
+        slots: [&[u32]; 2],
+    ) -> (Pose<L>, Pose<L>) {
+        let rest = slots.map(|slots| L::gather_fours(self.fine.fours(), slots));
+        let to_b = fine_difference([a.x, b.x], rest);
+        (Pose { x: Vec2::zero(), ..a }, Pose { x: to_b, ..b })
     }
 
     #[inline(always)]

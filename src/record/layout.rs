@@ -272,7 +272,7 @@ impl Order {
 
 /// Writes a snapshot's contacts in the order of their slots.
 pub(super) fn write_contacts(snapshot: &Snapshot, order: &mut Order, out: &mut Vec<u8>) {
-    let (count, width) = (snapshot.pairs.len(), snapshot.width);
+    let (count, width) = (snapshot.pairs.len(), snapshot.contact_width);
     let order = order.of(&snapshot.pairs);
     out.clear();
     out.reserve(16 + count * (12 + CONTACT_COLUMNS.len() * width));

@@ -99,7 +99,7 @@ fn overlaps(snapshot: &Snapshot) -> [f64; 2] {
     for at in 0..snapshot.pairs.len() {
         for point in 0..2 {
             let entry = at * CONTACT_COLUMNS.len() + SEPARATION + point;
-            let overlap = -Snapshot::number(&snapshot.contacts, snapshot.width, entry);
+            let overlap = -Snapshot::number(&snapshot.contacts, snapshot.contact_width, entry);
             if overlap > 0.0 {
                 most = most.max(overlap);
                 sum += overlap;

@@ -13,6 +13,7 @@ use super::strip::Strip;
 use super::table::{Record, Table};
 use super::{Machine, instructions};
 use crate::accuracy::Line;
+use crate::stress::{self, LimitLine, PassLine};
 
 /// Everything a report shows.
 #[derive(Clone, Debug, Serialize)]
@@ -52,6 +53,9 @@ pub struct Data {
     /// What `lamina gate` holds, in a file of its own.
     #[serde(skip)]
     pub instructions: Vec<instructions::Row>,
+    /// What `lamina stress` found, in a file of its own.
+    #[serde(skip)]
+    pub stress: Vec<stress::Row>,
     /// What the scenes look like, in files of their own.
     #[serde(skip)]
     pub strips: Vec<Strip>,
@@ -177,6 +181,7 @@ impl Data {
             limits: Vec::new(),
             peers: None,
             instructions: Vec::new(),
+            stress: Vec::new(),
             strips: Vec::new(),
         }
     }
@@ -226,6 +231,8 @@ impl Data {
             Table::of(&self.accuracy.contact)?,
             Table::of(&self.accuracy.fastest)?,
             Table::of(&self.accuracy.mixes)?,
+            Table::of(&stress::pass_lines(&self.stress))?,
+            Table::of(&stress::limit_lines(&self.stress))?,
             Table::of(&self.contacts)?,
             Table::of(&self.lanes)?,
             Table::of(&self.skips)?,
@@ -250,7 +257,7 @@ impl Data {
             match table.name {
                 matrix::Row::NAME if !self.headlines().is_empty() => {}
                 // In files of their own.
-                peers::Row::NAME | instructions::Row::NAME => {}
+                peers::Row::NAME | instructions::Row::NAME | PassLine::NAME | LimitLine::NAME => {}
                 Headline::NAME => {
                     summary.insert("rows".to_owned(), json!(table.raw));
                 }

@@ -5,6 +5,7 @@ use askama::Template;
 use super::plots::Plot;
 use super::{Data, Machine, Record, Table};
 use crate::accuracy::answers::MixLine;
+use crate::stress::{self, PassLine};
 
 /// A part of the page: what it is about, then its plots and tables.
 struct Group {
@@ -65,6 +66,12 @@ const GROUPS: &[Group] = &[
             "accuracy_all_momentum.svg",
         ],
         tables: &["mixes"],
+    },
+    Group {
+        title: "Where it breaks",
+        intro: "What must stand, hold or stop, with each solver, and the number at which it no longer does.",
+        plots: &[],
+        tables: &["stress", "stress_limits"],
     },
     Group {
         title: "Peers",
@@ -135,7 +142,7 @@ struct Section<'a> {
     anchor: String,
     intro: &'static str,
     /// What its rows answer, in sentences.
-    answers: &'a [String],
+    answers: Vec<String>,
     plots: Vec<Drawing<'a>>,
     tables: Vec<&'a Table>,
 }
@@ -179,7 +186,7 @@ impl<'a> Page<'a> {
                 title: group.title,
                 anchor: group.title.to_lowercase().replace([' ', '\''], "-"),
                 intro: group.intro,
-                answers: if group.tables.contains(&MixLine::NAME) { &data.accuracy.answers } else { &[] },
+                answers: answers_of(data, group),
                 plots: plots.map(drawing).collect(),
                 tables: group
                     .tables
@@ -205,6 +212,17 @@ impl<'a> Page<'a> {
     /// The summary.
     pub(super) fn markdown(&self) -> anyhow::Result<String> {
         Ok(Markdown { page: self, machine: &self.data.machine }.render()?)
+    }
+}
+
+/// What the rows of a group's tables answer.
+fn answers_of(data: &Data, group: &Group) -> Vec<String> {
+    if group.tables.contains(&MixLine::NAME) {
+        data.accuracy.answers.clone()
+    } else if group.tables.contains(&PassLine::NAME) {
+        stress::answers(&data.stress)
+    } else {
+        Vec::new()
     }
 }
 

@@ -149,7 +149,7 @@ const CAPSULE: [[f64; 2]; 8] = [
 
 /// A shape flying to the right from `height` on the y axis, and its own static wall of 0.1 m, which lies in
 /// the middle between two places where steps of 1/60 s would set the shape down.
-fn shot(shape: ShapeSpec, height: f64, speed: f64) -> [BodySpec; 2] {
+pub(super) fn shot(shape: ShapeSpec, height: f64, speed: f64) -> [BodySpec; 2] {
     let stride = speed / 60.0;
     let strides = (8.0 / stride).floor() + 0.5;
     let wall = block([0.05, 2.0], [strides * stride, height]);
@@ -162,12 +162,17 @@ pub(super) fn bullet() -> Scene {
     scene("a fast circle against a thin wall", bodies, Forces::default(), 60)
 }
 
+/// A wedge and a sliver, point first, and a plate broadside.
+pub(super) fn projectiles() -> [ShapeSpec; 3] {
+    let wedge = ShapeSpec::Polygon(vec![[0.2, 0.0], [-0.1, 0.1], [-0.1, -0.1]]);
+    let sliver = ShapeSpec::Polygon(vec![[0.4, 0.0], [-0.2, 0.01], [-0.2, -0.01]]);
+    [wedge, sliver, ShapeSpec::Box([0.01, 0.5])]
+}
+
 /// A wedge at 200 m/s, a sliver point first and a thin box broadside at 100 m/s, each against its own
 /// static wall 0.1 m thick, without gravity: 6 bodies.
 pub(super) fn bullets() -> Scene {
-    let wedge = ShapeSpec::Polygon(vec![[0.2, 0.0], [-0.1, 0.1], [-0.1, -0.1]]);
-    let sliver = ShapeSpec::Polygon(vec![[0.4, 0.0], [-0.2, 0.01], [-0.2, -0.01]]);
-    let plate = ShapeSpec::Box([0.01, 0.5]);
+    let [wedge, sliver, plate] = projectiles();
     let shots = [shot(wedge, 0.0, 200.0), shot(sliver, 10.0, 100.0), shot(plate, 20.0, 100.0)];
     scene("fast wedge, sliver and plate against thin walls", shots.concat(), Forces::default(), 60)
 }

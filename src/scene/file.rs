@@ -84,6 +84,9 @@ struct FileSettings {
     sleep: Option<bool>,
     max_sag: Option<f64>,
     stiffness: Option<f64>,
+    positions: Option<Precision>,
+    max_speed: Option<f64>,
+    max_gain: Option<f64>,
 }
 
 /// Reads a scene file and the settings it asks for (defaults elsewhere).
@@ -122,6 +125,9 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         sleep: asked.sleep.unwrap_or(default.sleep),
         max_sag: asked.max_sag,
         stiffness: asked.stiffness,
+        positions: asked.positions,
+        max_speed: asked.max_speed,
+        max_gain: asked.max_gain,
     };
     settings.check().map_err(|e| setting(e.to_string()))?;
     let steps = asked.steps.unwrap_or(600);

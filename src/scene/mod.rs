@@ -3,7 +3,7 @@
 //! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
 //! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be, [`smooth`] holds
-//! those of table A, [`contact`] those of table B.
+//! those of table A, [`contact`] those of table B, [`stress`] those of table T.
 
 pub mod cases;
 pub mod contact;
@@ -15,6 +15,7 @@ pub mod named;
 pub mod similar;
 pub mod smooth;
 mod stacks;
+pub mod stress;
 
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{cases, contact, driven, jointed, smooth, stacks};
+use super::{cases, contact, driven, jointed, smooth, stacks, stress};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -92,11 +92,9 @@ pub struct SceneInfo {
 }
 
 /// Every scene of the library.
-pub const SCENES: &[SceneInfo] = &joined::<{ NAMED.len() + smooth::SCENES.len() + contact::SCENES.len() }>([
-    NAMED,
-    smooth::SCENES,
-    contact::SCENES,
-]);
+pub const SCENES: &[SceneInfo] = &joined::<
+    { NAMED.len() + smooth::SCENES.len() + contact::SCENES.len() + stress::SCENES.len() },
+>([NAMED, smooth::SCENES, contact::SCENES, stress::SCENES]);
 
 /// A scene of which nothing can be chosen.
 pub(super) const fn fixed(
@@ -108,8 +106,8 @@ pub(super) const fn fixed(
     SceneInfo { name, takes: Takes::Nothing, default: bodies, about, build }
 }
 
-/// Three tables as one.
-const fn joined<const N: usize>(tables: [&[SceneInfo]; 3]) -> [SceneInfo; N] {
+/// Four tables as one.
+const fn joined<const N: usize>(tables: [&[SceneInfo]; 4]) -> [SceneInfo; N] {
     let mut all = [tables[0][0]; N];
     let (mut table, mut before, mut k) = (0, 0, 0);
     while k < N {

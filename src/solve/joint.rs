@@ -46,7 +46,7 @@ mod stream;
 
 use super::constraint::Side;
 use super::soft;
-use crate::body::Bodies;
+use crate::body::{Bodies, fine_difference};
 use crate::column::Column;
 use crate::joint::{Held, Joint};
 use crate::lanes::{Lanes, Real};
@@ -149,9 +149,24 @@ struct Pose<L> {
 }
 
 impl<L: Lanes> Pose<L> {
-    fn gather(bodies: &Bodies<L::Elem>, slots: &[u32]) -> Self {
-        let of = |column: &Column<L::Elem>| lanes::<L, _>(slots, |&slot| column[slot as usize]);
-        Self { at: Vec2::new(of(&bodies.x), of(&bodies.y)), rot: Rot { c: of(&bodies.c), s: of(&bodies.s) } }
+    /// Those of A and B; where positions are finer than their columns, seen from A.
+    fn gather(bodies: &Bodies<L::Elem>, slots: [&[u32]; 2]) -> [Self; 2] {
+        let mut poses = slots.map(|slots| {
+            let of = |column: &Column<L::Elem>| lanes::<L, _>(slots, |&slot| column[slot as usize]);
+            Self {
+                at: Vec2::new(of(&bodies.x), of(&bodies.y)),
+                rot: Rot { c: of(&bodies.c), s: of(&bodies.s) },
+            }
+        });
+        if let Some(rows) = &bodies.fine {
+            let rest = slots.map(|slots| {
+                let of = |k: usize| lanes::<L, _>(slots, |&slot| rows.fours()[slot as usize][k]);
+                [of(0), of(1), L::zero(), L::zero()]
+            });
+            let to_b = fine_difference([poses[0].at, poses[1].at], rest);
+            (poses[0].at, poses[1].at) = (Vec2::zero(), to_b);
+        }
+        poses
     }
 }
 

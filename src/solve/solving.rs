@@ -66,6 +66,8 @@ pub struct Solving<L: Lanes> {
     last_h_secs: f64,
     /// This substep over that one.
     scale: f64,
+    /// The longest step that contacts still remember, seconds; see [`soft::STIFFENING`].
+    remembered_secs: f64,
     /// The same of joints.
     last_joint_h_secs: f64,
     joint_scale: f64,
@@ -96,6 +98,7 @@ impl<L: Lanes> Default for Solving<L> {
             recut: true,
             last_h_secs: 0.0,
             scale: 1.0,
+            remembered_secs: 0.0,
             last_joint_h_secs: 0.0,
             joint_scale: 1.0,
             latest: Latest::default(),
@@ -232,6 +235,7 @@ impl<L: Lanes> Solving<L> {
     ) -> Warm {
         let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
         self.scale = if last > 0.0 { h / last } else { 1.0 };
+        self.remembered_secs = task.dt_secs.max(self.remembered_secs * soft::STIFFENING);
         let lively = task.traits.restitution && pushes(task.solver) && motion.lively;
         let was_lively = std::mem::replace(&mut self.lively, lively);
         self.bouncing = lively && self.note_approaches(task, bodies, manifolds, motion);
@@ -279,6 +283,8 @@ impl<L: Lanes> Solving<L> {
     /// Joints, then contacts of one substep, before bodies move.
     pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
         let h_secs = task.plan.h_secs;
+        // 1 to the bit where all steps have one length.
+        let softened = task.dt_secs / self.remembered_secs;
         let rows = motion.velocity.fours_mut();
         // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
         let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());
@@ -297,7 +303,7 @@ impl<L: Lanes> Solving<L> {
                 stream.visit(&mut soft::Push {
                     rows,
                     moved,
-                    soft: Softness::new(h_secs, task.stiffness / h_secs, soft::DAMPING, cap),
+                    soft: Softness::new(h_secs, softened * (task.stiffness / h_secs), soft::DAMPING, cap),
                     share: L::lit(share),
                     per_share: L::lit(1.0 / share),
                 });

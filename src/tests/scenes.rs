@@ -103,6 +103,10 @@ fn every_scene_is_taken_in_and_nothing_overlaps_at_first() {
             for settings in [Settings::default(), in_f64()] {
                 let world = simulate(&scene, settings).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
                 assert_eq!(world.bodies(), scene.bodies.len());
+                // Bodies that begin in each other are what these are about.
+                if info.name.starts_with("t14_") {
+                    continue;
+                }
                 let overlap = world.penetration().max;
                 assert!(overlap <= 1e-4, "{} begins with an overlap of {overlap} m", scene.name);
             }

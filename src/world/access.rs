@@ -101,6 +101,7 @@ impl<L: Lanes> World<L> {
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
         self.motion.stir_up();
+        self.watchdog.forget();
         self.bodies.apply_impulse(id, linear, angular)?;
         self.islands.wake(id.slot());
         Ok(())
@@ -113,6 +114,7 @@ impl<L: Lanes> World<L> {
     /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`]. Wakes all.
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
         self.disturbed = true;
+        self.watchdog.forget();
         self.motion.stir_up();
         self.islands.wake_all();
         &mut self.bodies

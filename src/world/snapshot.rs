@@ -21,8 +21,10 @@ pub const COLUMNS: [&str; 7] = ["x", "y", "c", "s", "vx", "vy", "w"];
 pub struct Snapshot {
     /// Steps taken.
     pub step: u64,
-    /// Bytes per number: 4 or 8.
+    /// Bytes per number of a column: 4 or 8.
     pub width: usize,
+    /// Bytes per number of a contact: 4 or 8.
+    pub contact_width: usize,
     /// Bodies that have a place in the columns, living or not: slots 1 to this.
     pub slots: usize,
     /// [`COLUMNS`] one after the other, `slots` numbers each: metres, cos, sin, m/s, rad/s.
@@ -49,14 +51,23 @@ impl<L: Lanes> World<L> {
         let bodies = &self.bodies;
         let slots = bodies.len() - 1;
         into.step = self.steps;
-        into.width = size_of::<L::Elem>();
+        into.contact_width = size_of::<L::Elem>();
+        into.width = if bodies.fine.is_some() { size_of::<f64>() } else { into.contact_width };
         into.slots = slots;
         into.counts = self.counts;
         into.times = self.times;
         into.revision = [bodies.revision(), bodies.removals(), self.fields_set];
         into.columns.clear();
-        for column in [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w] {
-            into.columns.extend_from_slice(cast_slice(&column.as_slice()[1..=slots]));
+        if bodies.fine.is_some() {
+            let places = (0..2).flat_map(|k| (1..=slots).map(move |slot| bodies.place(slot)[k]));
+            let columns = [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
+            let others = columns.into_iter().flat_map(|column| &column.as_slice()[1..=slots]);
+            let all = places.chain(others.map(|value| value.to_f64()));
+            into.columns.extend(all.flat_map(f64::to_le_bytes));
+        } else {
+            for column in [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w] {
+                into.columns.extend_from_slice(cast_slice(&column.as_slice()[1..=slots]));
+            }
         }
         into.flags.clear();
         let asleep = self.islands.asleep();

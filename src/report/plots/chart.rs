@@ -22,11 +22,11 @@ pub(crate) const PALETTE: [RGBColor; 6] = [
 const ON_DARK: RGBColor = RGBColor(254, 254, 254);
 
 /// Named points of one line, or the heights of one set of bars.
-pub(super) struct Series {
+pub(crate) struct Series {
     /// In the legend.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// x and y.
-    pub(super) points: Vec<(f64, f64)>,
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
 pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -65,13 +65,13 @@ fn titled<'a, 'b>(area: &'a Area<'b>, title: &str, left: u32) -> ChartBuilder<'a
 
 /// Where lines leave room for their names: they rise or fall.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slope {
+pub(crate) enum Slope {
     Up,
     Down,
 }
 
 /// Lines over two logarithmic axes.
-pub(super) fn log_log(
+pub(crate) fn log_log(
     title: &str,
     [x_label, y_label]: [&str; 2],
     series: &[Series],

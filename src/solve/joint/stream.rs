@@ -236,7 +236,7 @@ impl<L: Lanes> JointStream<L> {
 
     /// A step begins: arms, gaps and angles from the poses.
     pub fn place(&mut self, bodies: &Bodies<L::Elem>) {
-        each!(self, |c, ends| { c.place([Pose::gather(bodies, ends.a), Pose::gather(bodies, ends.b)]) });
+        each!(self, |c, ends| { c.place(Pose::gather(bodies, [ends.a, ends.b])) });
     }
 
     /// Makes impulses `scale` times what they were and adds what they change velocities by, times `share`: with the

@@ -1,0 +1,253 @@
+//! What a reader sees of the rows: which cases pass, and up to where they hold.
+
+use serde::Serialize;
+
+use super::run::Row;
+use super::table::CASES;
+use crate::report::Record;
+use crate::settings::Solver;
+
+/// What is shown side by side: solvers and substeps.
+const SHOWN: [(Solver, u32); 7] = [
+    (Solver::Soft, 4),
+    (Solver::Soft, 8),
+    (Solver::Soft, 16),
+    (Solver::Impulse, 8),
+    (Solver::Pgs, 8),
+    (Solver::Xpbd, 8),
+    (Solver::Avbd, 8),
+];
+/// Of those, what misses are explained for.
+const DEFAULT: usize = 1;
+
+/// One number or word for each of what is shown; null where it was not run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Columns<T> {
+    /// The default solver, 4 substeps.
+    pub soft_4: T,
+    /// 8 substeps.
+    pub soft_8: T,
+    /// 16 substeps.
+    pub soft_16: T,
+    /// The others, 8 substeps.
+    pub impulse_8: T,
+    /// See `impulse_8`.
+    pub pgs_8: T,
+    /// See `impulse_8`.
+    pub xpbd_8: T,
+    /// See `impulse_8`.
+    pub avbd_8: T,
+}
+
+impl<T> Columns<T> {
+    fn of(rows: &[&Row], value: impl Fn(Option<&Row>) -> T) -> Self {
+        let at = |k: usize| {
+            let (solver, substeps) = SHOWN[k];
+            value(rows.iter().copied().find(|row| row.solver == solver && row.substeps == substeps))
+        };
+        Self {
+            soft_4: at(0),
+            soft_8: at(1),
+            soft_16: at(2),
+            impulse_8: at(3),
+            pgs_8: at(4),
+            xpbd_8: at(5),
+            avbd_8: at(6),
+        }
+    }
+
+    fn cells(&self, cell: impl Fn(&T) -> String) -> [String; 7] {
+        let Self { soft_4, soft_8, soft_16, impulse_8, pgs_8, xpbd_8, avbd_8 } = self;
+        [soft_4, soft_8, soft_16, impulse_8, pgs_8, xpbd_8, avbd_8].map(cell)
+    }
+}
+
+/// A case, and which solvers pass it.
+#[derive(Clone, Debug, Serialize)]
+pub struct PassLine {
+    /// Its item in the list of cases.
+    pub item: String,
+    /// Its name.
+    pub case: String,
+    /// What must hold.
+    pub threshold: String,
+    /// What the default solver has at 8 substeps.
+    pub found: Vec<Option<f64>>,
+    /// Who passes.
+    pub pass: Columns<Option<bool>>,
+}
+
+impl Record for PassLine {
+    const NAME: &'static str = "stress";
+    const TITLE: &'static str = "What holds";
+    const COMMAND: &'static str = "lamina stress --limit --out reports/stress";
+    const NOTE: &'static str = "The table of stability: the default solver with 4, 8 and 16 substeps, the others with 8, 60 steps a \
+                                second, without sleep. `found` is what the default solver has with 8.";
+    const HEADER: &'static [&'static str] = &[
+        "case",
+        "soft ×4",
+        "soft ×8",
+        "soft ×16",
+        "impulse ×8",
+        "pgs ×8",
+        "xpbd ×8",
+        "avbd ×8",
+        "must hold",
+        "found",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        let found: Vec<String> = self
+            .found
+            .iter()
+            .map(|found| found.map_or_else(|| "–".to_owned(), |v| format!("{v:.1e}")))
+            .collect();
+        let passed = self.pass.cells(|pass| match pass {
+            Some(true) => "yes".to_owned(),
+            Some(false) => "no".to_owned(),
+            None => "–".to_owned(),
+        });
+        let mut cells = vec![self.case.clone()];
+        cells.extend(passed);
+        cells.extend([self.threshold.clone(), found.join(", ")]);
+        cells
+    }
+}
+
+/// A case, and the number up to which it holds.
+#[derive(Clone, Debug, Serialize)]
+pub struct LimitLine {
+    /// Its name.
+    pub case: String,
+    /// What the number is, with its unit.
+    pub parameter: String,
+    /// Where the table looks.
+    pub value: f64,
+    /// In words: a number, `≥` where the harshest that was tried holds, `none` where not even the mildest does.
+    pub limit: Columns<String>,
+}
+
+impl Record for LimitLine {
+    const NAME: &'static str = "stress_limits";
+    const TITLE: &'static str = "Up to where it holds";
+    const COMMAND: &'static str = PassLine::COMMAND;
+    const NOTE: &'static str = "The number each case is a function of, raised (or lowered) by twos until something breaks that must hold, then \
+                                halved to one part in twenty; in runs of the length of quick ones. ≥: the harshest that was tried holds.";
+    const HEADER: &'static [&'static str] = &[
+        "case",
+        "number",
+        "asked",
+        "soft ×4",
+        "soft ×8",
+        "soft ×16",
+        "impulse ×8",
+        "pgs ×8",
+        "xpbd ×8",
+        "avbd ×8",
+    ];
+
+    fn cells(&self) -> Vec<String> {
+        let mut cells = vec![self.case.clone(), self.parameter.clone(), short(self.value)];
+        cells.extend(self.limit.cells(String::clone));
+        cells
+    }
+}
+
+/// Three significant digits.
+fn short(value: f64) -> String {
+    if (0.01..1e4).contains(&value.abs()) {
+        let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 4) as usize;
+        let text = format!("{value:.digits$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// The limit of a row, as a cell has it.
+pub(super) fn limit_cell(row: &Row) -> String {
+    match (row.limit, row.limit_note.as_deref()) {
+        (Some(limit), Some("harshest")) => format!("≥ {}", short(limit)),
+        (Some(limit), _) => short(limit),
+        (None, Some(_)) => "none".to_owned(),
+        (None, None) => "–".to_owned(),
+    }
+}
+
+/// Rows of each case, in the table's order.
+fn by_case(rows: &[Row]) -> impl Iterator<Item = Vec<&Row>> {
+    let of = |name: &str| -> Vec<&Row> { rows.iter().filter(|row| row.case == name).collect() };
+    CASES.iter().map(move |case| of(case.name)).filter(|rows| !rows.is_empty())
+}
+
+/// Who passes what.
+pub fn pass_lines(rows: &[Row]) -> Vec<PassLine> {
+    let line = |rows: Vec<&Row>| {
+        let (solver, substeps) = SHOWN[DEFAULT];
+        let ours = rows.iter().find(|row| row.solver == solver && row.substeps == substeps);
+        PassLine {
+            item: rows[0].item.clone(),
+            case: rows[0].case.clone(),
+            threshold: rows[0].threshold.clone(),
+            found: ours.map_or_else(Vec::new, |row| row.found.clone()),
+            pass: Columns::of(&rows, |row| row.map(|row| row.pass)),
+        }
+    };
+    by_case(rows).map(line).collect()
+}
+
+/// Up to where each holds; nothing where that was not sought.
+pub fn limit_lines(rows: &[Row]) -> Vec<LimitLine> {
+    let sought = |rows: &Vec<&Row>| rows.iter().any(|row| row.limit_note.is_some() || row.limit.is_some());
+    let line = |rows: Vec<&Row>| LimitLine {
+        case: rows[0].case.clone(),
+        parameter: format!("{} {}", rows[0].parameter, rows[0].unit).trim_end().to_owned(),
+        value: rows[0].value,
+        limit: Columns::of(&rows, |row| row.map_or_else(|| "–".to_owned(), limit_cell)),
+    };
+    by_case(rows).filter(sought).map(line).collect()
+}
+
+/// Items of the list of cases, and how many of them pass in all their cases: of what is shown, in its order.
+pub fn passed_items(rows: &[Row]) -> Vec<(String, usize, usize)> {
+    let count = |&(solver, substeps): &(Solver, u32)| {
+        let rows: Vec<&Row> =
+            rows.iter().filter(|row| row.solver == solver && row.substeps == substeps).collect();
+        let mut items: Vec<&str> = rows.iter().map(|row| row.item.as_str()).collect();
+        items.dedup();
+        let holds = |item: &&&str| rows.iter().all(|row| row.item != **item || row.pass);
+        let passed = items.iter().filter(holds).count();
+        (format!("{solver} ×{substeps}"), passed, items.len())
+    };
+    SHOWN.iter().map(count).filter(|(_, _, items)| *items > 0).collect()
+}
+
+/// What the rows answer, in sentences.
+pub fn answers(rows: &[Row]) -> Vec<String> {
+    let passed: Vec<String> =
+        passed_items(rows).iter().map(|(who, passed, items)| format!("{who} {passed} of {items}")).collect();
+    if passed.is_empty() {
+        return Vec::new();
+    }
+    let mut all = vec![format!("Items of the table of stability that hold: {}.", passed.join(", "))];
+    let (solver, substeps) = SHOWN[DEFAULT];
+    let missed = rows.iter().filter(|row| row.solver == solver && row.substeps == substeps && !row.pass);
+    all.extend(missed.map(|row| {
+        let about = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.about);
+        let found: Vec<String> = row
+            .found
+            .iter()
+            .map(|found| found.map_or_else(|| "–".to_owned(), |v| format!("{v:.2e}")))
+            .collect();
+        let broke = row.failed.as_ref().map_or_else(String::new, |failed| format!("; broke off: {failed}"));
+        let why = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.missed);
+        let why = if why.is_empty() { String::new() } else { format!(": {why}") };
+        format!(
+            "{} ({about}) does not hold with {solver} ×{substeps}: {} asked, {} found{broke}{why}.",
+            row.case,
+            row.threshold,
+            found.join(", ")
+        )
+    }));
+    all
+}
