@@ -317,6 +317,7 @@ impl<L: Lanes> World<L> {
         skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
         self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, traits);
         let paces = self.solving.paces().span().filter(|_| !free_flight);
+        self.counts.direct_joints = self.solving.direct_joints();
         self.counts.substeps = paces.unwrap_or([substeps; 2]);
         self.times.steps += 1;
         self.check_finite(finite)?;
@@ -384,7 +385,8 @@ impl<L: Lanes> World<L> {
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
-            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
+            let length = task.traits.length;
+            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion, length);
         }
         let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));

@@ -256,6 +256,7 @@ fn counted(counts: &Counts) -> Value {
         "sleeping": counts.sleeping,
         "islands": counts.islands,
         "substeps": counts.substeps,
+        "direct_joints": counts.direct_joints,
         "skipped": skipped,
     })
 }

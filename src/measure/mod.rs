@@ -115,6 +115,8 @@ pub struct Counts {
     pub islands: usize,
     /// The least and the most substeps any body had.
     pub substeps: [u32; 2],
+    /// Joints that were solved directly, as masses in their tree differ too much for visits.
+    pub direct_joints: usize,
     /// Per [`Skip`], how many bodies (motion) or contacts (contact terms) it spared work.
     pub skipped: [u64; Skip::ALL.len()],
 }

@@ -241,7 +241,7 @@ impl<L: Lanes> Visit<L> for Part<'_, L> {
 
 /// Gaps once bodies have `moved`.
 #[inline(always)]
-fn gaps<L: Lanes, const POINTS: usize>(
+pub(super) fn gaps<L: Lanes, const POINTS: usize>(
     c: &Constraint<L, POINTS>,
     ends: &Ends<'_>,
     moved: Option<&[[L::Elem; 4]]>,

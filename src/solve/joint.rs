@@ -39,6 +39,7 @@
 //! shrink it by their square. ζ = 5 rather than 1 or 2: residual motion of a chain with a 100-fold weight after ten
 //! seconds 0.1 to 0.6 mm/s, against 25 to 150.
 
+mod direct;
 mod pin;
 mod rod;
 mod row;
@@ -91,6 +92,11 @@ impl<L: Lanes> Stiffness<L> {
     /// Of the solvers with one pass.
     pub(super) fn baumgarte(h_secs: f64) -> Self {
         Self::new(h_secs, 1.0, BAUMGARTE / h_secs, 1.0 - LEAK)
+    }
+
+    /// What an impulse changes u by, over what it changes v by.
+    fn share(&self) -> L {
+        self.share
     }
 
     fn new(h_secs: f64, share: f64, bias_rate: f64, mass_scale: f64) -> Self {

@@ -35,6 +35,7 @@
 mod avbd;
 mod block;
 pub mod bounce;
+mod deep;
 pub mod color;
 pub mod constraint;
 mod impulse;

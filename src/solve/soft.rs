@@ -67,22 +67,24 @@ impl<L: Lanes> Softness<L> {
     }
 }
 
-/// The pass before bodies move: normal impulses with bias.
+/// The pass before bodies move: normal impulses with bias; `DEEP`: something is, see [`super::deep`].
 #[derive(Debug)]
-pub struct Push<'a, L: Lanes> {
+pub struct Push<'a, L: Lanes, const DEEP: bool> {
     /// Moving velocities u per slot: ux, uy, uω, 1/m.
     pub rows: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` in a step's first, whose gaps are up to date.
     pub moved: Option<&'a [[L::Elem; 4]]>,
     /// Coefficients.
     pub soft: Softness<L>,
+    /// Points with a smaller separation, metres, only stop closing; where something is deep.
+    pub deep: L,
     /// What an impulse changes u by, over what it changes v by.
     pub share: L,
     /// 1/`share`.
     pub per_share: L,
 }
 
-impl<L: Lanes> Visit<L> for Push<'_, L> {
+impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
@@ -93,7 +95,11 @@ impl<L: Lanes> Visit<L> for Push<'_, L> {
         let mut normals = Normals::begin(c, &a, &b);
         let cross = cross(c, &normals);
         let apart: [L::Mask; POINTS] = std::array::from_fn(|k| zero.lt(c.points[k].separation));
-        let soften: [L; POINTS] = std::array::from_fn(|k| L::select(apart[k], L::one(), soft.mass_scale));
+        let is_deep: [L::Mask; POINTS] = std::array::from_fn(|k| c.points[k].separation.lt(self.deep));
+        let soften: [L; POINTS] = std::array::from_fn(|k| {
+            let rigid = if DEEP { apart[k] | is_deep[k] } else { apart[k] };
+            L::select(rigid, L::one(), soft.mass_scale)
+        });
         let masses = c.points.map(|point| point.mass);
         // Impulses in units of u: `share` of those of v.
         let held = c.points.map(|point| point.held * self.share);
@@ -102,6 +108,7 @@ impl<L: Lanes> Visit<L> for Push<'_, L> {
             let point = &c.points[k];
             let closing = point.separation * soft.per_sec;
             let pushing = soft.push_cap.max(point.separation * soft.bias_rate);
+            let pushing = if DEEP { L::select(is_deep[k], zero, pushing) } else { pushing };
             normals.velocity(point) + L::select(apart[k], closing, pushing) - answer[k]
         });
         let soft_masses: [L; POINTS] = std::array::from_fn(|k| masses[k] * soften[k]);

@@ -1,5 +1,7 @@
 //! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
 
+mod end;
+
 use super::bounce::{self, Bounces};
 use super::color::Coloring;
 use super::constraint::Constraint;
@@ -7,7 +9,7 @@ use super::joint::{JointStream, Sources, Stiffness};
 use super::pace::{Goal, Paces};
 use super::soft::{self, Softness};
 use super::stream::{Ends, Stream, Visit, WarmStart};
-use super::{Task, avbd, carries_impulses, impulse, pgs, pushes, xpbd};
+use super::{Task, avbd, carries_impulses, deep, impulse, pgs, pushes, xpbd};
 use crate::body::Bodies;
 use crate::contact::Manifolds;
 use crate::integrate::{Motion, Warm};
@@ -76,6 +78,8 @@ pub struct Solving<L: Lanes> {
     lively: bool,
     /// Something bounces in this step.
     bouncing: bool,
+    /// Something was deep in something else when last looked at; see [`deep`].
+    deep: bool,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
@@ -104,6 +108,7 @@ impl<L: Lanes> Default for Solving<L> {
             latest: Latest::default(),
             lively: false,
             bouncing: false,
+            deep: false,
             until_summed: 0,
         }
     }
@@ -171,8 +176,11 @@ impl<L: Lanes> Solving<L> {
         narrow: &mut Narrow<L::Elem>,
         changed: bool,
         motion: &Motion<L::Elem>,
+        length: f64,
     ) {
         self.recut |= changed;
+        // Those whose manifolds are kept are looked at as a step ends.
+        self.deep |= narrow.deepest() < -deep::DEEP * length;
         if changed {
             self.coloring.run(bodies, &mut narrow.manifolds);
             self.stream.cut(&self.coloring, &narrow.manifolds, &self.paces);
@@ -298,15 +306,18 @@ impl<L: Lanes> Solving<L> {
             Solver::Soft => {
                 if with_joints {
                     joints.push(rows, None, &Stiffness::soft(h_secs, share));
+                    joints.solve_directly(rows, Some(&Stiffness::soft(h_secs, share)));
                 }
                 let cap = soft::PUSH_CAP * task.traits.length / task.dt_secs;
-                stream.visit(&mut soft::Push {
-                    rows,
-                    moved,
-                    soft: Softness::new(h_secs, softened * (task.stiffness / h_secs), soft::DAMPING, cap),
-                    share: L::lit(share),
-                    per_share: L::lit(1.0 / share),
-                });
+                let soft = softened * (task.stiffness / h_secs);
+                let soft = Softness::new(h_secs, soft, soft::DAMPING, cap);
+                let deep = L::lit(-deep::DEEP * task.traits.length);
+                let [share, per_share] = [share, 1.0 / share].map(L::lit);
+                if self.deep {
+                    stream.visit(&mut soft::Push::<L, true> { rows, moved, soft, deep, share, per_share });
+                } else {
+                    stream.visit(&mut soft::Push::<L, false> { rows, moved, soft, deep, share, per_share });
+                }
             }
             Solver::Pgs => {
                 for iteration in 0..pgs::ITERATIONS {
@@ -348,6 +359,7 @@ impl<L: Lanes> Solving<L> {
                 let (rows, per_sec) = (motion.velocity.fours_mut(), L::lit(1.0 / task.plan.h_secs));
                 if with_joints {
                     joints.relax(rows, motion.moved.fours(), &how);
+                    joints.solve_directly(rows, None);
                 }
                 if task.traits.friction {
                     stream.visit(&mut soft::Relax::<L, true> { rows, per_sec });
@@ -378,71 +390,6 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// After the last substep: bounces.
-    pub fn end(
-        &mut self,
-        task: &Task<'_, L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-        motion: &mut Motion<L::Elem>,
-    ) {
-        let settled = self.paces.count() > 1 || matches!(task.solver, Solver::Xpbd | Solver::Avbd);
-        if self.bouncing {
-            self.follow_pairs(task, manifolds, motion);
-            if self.bounce(task, motion, settled) && task.solver == Solver::Avbd {
-                self.stream.end_where(false, manifolds, None);
-            }
-        }
-        self.latest = if task.solver == Solver::Avbd {
-            Latest::InPairs
-        } else if settled {
-            Latest::InConstraints
-        } else {
-            Latest::BeforeDisplacements
-        };
-    }
-
-    /// Gives bounces their impulses and displacements; says whether there were any.
-    fn bounce(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
-        let Self { displaced, stream, bounces, .. } = self;
-        let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours_mut());
-        // Left as zeros by the bounces before.
-        displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
-        let before = (!settled).then_some(&*moved);
-        let touch = L::lit(task.traits.touch());
-        let mut pass = bounce::Bounce { rows, displaced, touch, moved: before, bounces, any: false };
-        stream.visit(&mut pass);
-        if !pass.any {
-            return false;
-        }
-        stream.visit(&mut bounce::Part { rows, displaced, moved: before });
-        if settled {
-            stream.visit(&mut Follow { moved: displaced });
-        }
-        for (moved, displaced) in moved.iter_mut().zip(displaced) {
-            for (way, change) in
-                moved.iter_mut().zip(std::mem::replace(displaced, [L::Elem::ZERO; 4])).take(3)
-            {
-                *way += change;
-            }
-        }
-        true
-    }
-
-    /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
-    fn follow_pairs(
-        &mut self,
-        task: &Task<'_, L::Elem>,
-        manifolds: &Manifolds<L::Elem>,
-        motion: &Motion<L::Elem>,
-    ) {
-        if task.solver == Solver::Avbd {
-            for &place in manifolds.touching() {
-                self.stream.touch(place);
-            }
-            self.stream.begin(manifolds, motion.matter.fours());
-        }
-    }
-
     /// The manifolds with today's gaps and impulses.
     pub fn brought_up_to_date(
         &self,
@@ -469,6 +416,11 @@ impl<L: Lanes> Solving<L> {
     /// Hands impulses and angles back to the joints.
     pub fn end_joints(&mut self, joints: &mut Joints<L::Elem>) {
         self.joints.end(joints);
+    }
+
+    /// Joints solved directly in a step of this solver.
+    pub fn direct_joints(&self) -> usize {
+        self.joints.direct()
     }
 
     /// The joints' constraints.

@@ -42,6 +42,8 @@ pub struct Row {
     pub limit: Option<f64>,
     /// How far it was sought: `harshest` where the harshest that is tried holds, `none` where not even the mildest does.
     pub limit_note: Option<String>,
+    /// Joints that were solved directly: where masses differ too much for visits.
+    pub direct_joints: usize,
     /// Why the run broke off.
     pub failed: Option<String>,
 }
@@ -95,6 +97,7 @@ pub fn run(case: &Case, value: f64, settings: Settings, secs: f64) -> anyhow::Re
         most,
         limit: None,
         limit_note: None,
+        direct_joints: seen.direct_joints,
         failed: seen.failed,
     })
 }

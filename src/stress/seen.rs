@@ -4,6 +4,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::measure::Penetration;
 use crate::scene::{BodyKind, Scene};
+use crate::settings::Solver;
 use crate::simulation::{BodyState, Simulation};
 
 /// Looks at overlaps in the second half.
@@ -62,6 +63,8 @@ pub struct Seen {
     pub stretch: f64,
     /// Kinetic and potential energy, momentum and angular momentum at the start and at the end.
     pub sums: [crate::measure::Invariants; 2],
+    /// Joints that were solved directly in the last step.
+    pub direct_joints: usize,
     /// Why it broke off.
     pub failed: Option<String>,
     kinds: Vec<BodyKind>,
@@ -102,6 +105,7 @@ impl Watch {
             highest: 0.0,
             stretch: 0.0,
             sums: [sums; 2],
+            direct_joints: 0,
             failed: None,
             kinds: scene.bodies.iter().map(|body| body.kind).collect(),
         };
@@ -157,6 +161,7 @@ impl Watch {
     pub(super) fn finish(mut self, world: &dyn Simulation, failed: Option<String>) -> Seen {
         let seen = &mut self.seen;
         seen.sums[1] = world.invariants();
+        seen.direct_joints = if world.settings().solver == Solver::Soft { world.counts().direct_joints } else { 0 };
         seen.metrics.jit = if self.samples > 0.0 { (self.squares / self.samples).sqrt() } else { 0.0 };
         seen.metrics.drift = farthest(&seen.half, &seen.end, &seen.kinds);
         seen.metrics.settle_secs = self.slow_since;

@@ -49,7 +49,7 @@ pub(super) const SCENES: &[SceneInfo] = &[
     info("t21_far", "T21: a pyramid 1e5 m from the origin", |_, _| far(1e5), 55),
     info("t22_wide", "T22: a column on a floor of 2000 km", |_, _| wide(1e6), 5),
     info("t23_tiny", "T23: a pyramid of boxes of 5 cm", |_, _| scaled(0.05), 465),
-    info("t24_net", "T24: a net of discs", |_, _| net(20.0), 400),
+    info("t24_net", "T24: a net of discs", |_, _| net(8.0), 64),
     info("t25_spin", "T25: a long box at 1000 rad/s", |_, _| spun(1000.0), 1),
     info("t27_drift", "T27: bodies that drift without gravity", |_, _| drifting(1.0), 12),
 ];

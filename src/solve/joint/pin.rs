@@ -17,7 +17,7 @@
 use super::row::{Numbers, Row};
 use super::{Linkage, Pose, Stiffness, Swing, anchors, lanes, number, turn};
 use crate::joint::{Held, Joint};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::{Side, inverse};
 use crate::vec2::{Rot, Vec2};
 
@@ -43,7 +43,7 @@ pub(super) struct Pin<L> {
 }
 
 /// A pin's response: K⁻¹, c and k of the module's head.
-struct Response<L> {
+pub(super) struct Response<L> {
     inverse: [L; 3],
     coupling: Vec2<L>,
     angular: L,
@@ -53,9 +53,8 @@ impl<L: Lanes> Response<L> {
     #[inline(always)]
     fn new(pin: &Pin<L>, inv_mass: L) -> Self {
         let ([ia, ib], [ra, rb], m) = (pin.inv_inertia, pin.arms, inv_mass);
-        let k11 = m + (ia * (ra.y * ra.y) + ib * (rb.y * rb.y));
-        let k22 = m + (ia * (ra.x * ra.x) + ib * (rb.x * rb.x));
-        let k12 = ia * (ra.x * ra.y) + ib * (rb.x * rb.y);
+        let [k11, minus_k12, k22] = Self::matrix(pin, inv_mass);
+        let k12 = -minus_k12;
         let (both, cross) = (ia * ib, ra.cross(rb));
         let squares = ia * ra.length_squared() + ib * rb.length_squared();
         let determinant = m * m + (m * squares + both * (cross * cross));
@@ -63,6 +62,16 @@ impl<L: Lanes> Response<L> {
         let coupling = Vec2::new(-(ia * ra.y + ib * rb.y), ia * ra.x + ib * rb.x);
         let angular = (m * per) * (m * (ia + ib) + both * (ra - rb).length_squared());
         Self { inverse: [k22 * per, k12 * per, k11 * per], coupling, angular }
+    }
+
+    /// K: its diagonal's first, the one beside it, its diagonal's second, 1/kg.
+    #[inline(always)]
+    pub(super) fn matrix(pin: &Pin<L>, inv_mass: L) -> [L; 3] {
+        let ([ia, ib], [ra, rb], m) = (pin.inv_inertia, pin.arms, inv_mass);
+        let k11 = m + (ia * (ra.y * ra.y) + ib * (rb.y * rb.y));
+        let k22 = m + (ia * (ra.x * ra.x) + ib * (rb.x * rb.x));
+        let k12 = ia * (ra.x * ra.y) + ib * (rb.x * rb.y);
+        [k11, -k12, k22]
     }
 
     /// K⁻¹·v.
@@ -75,7 +84,7 @@ impl<L: Lanes> Response<L> {
 
 impl<L: Lanes> Pin<L> {
     #[inline(always)]
-    fn apply(&mut self, a: &mut Side<L>, b: &mut Side<L>, impulse: Vec2<L>, angular: L) {
+    pub(super) fn apply(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: Vec2<L>, angular: L) {
         a.velocity = a.velocity - impulse * a.inv_mass;
         b.velocity = b.velocity + impulse * b.inv_mass;
         a.spin = a.spin - self.inv_inertia[0] * (self.arms[0].cross(impulse) + angular);
@@ -86,6 +95,68 @@ impl<L: Lanes> Pin<L> {
     #[inline(always)]
     fn slip(&self, a: &Side<L>, b: &Side<L>) -> Vec2<L> {
         (b.velocity - a.velocity) + (self.arms[1].turned_by(b.spin) - self.arms[0].turned_by(a.spin))
+    }
+}
+
+impl<L: Lanes> Pin<L> {
+    /// One lane's, in `f64`; without the row of its angle.
+    pub(super) fn lane(&self, lane: usize) -> Pin<f64> {
+        let number = |value: L| value.to_array()[lane].to_f64();
+        let vector = |v: Vec2<L>| Vec2::new(number(v.x), number(v.y));
+        Pin {
+            anchors: self.anchors.map(vector),
+            inv_inertia: self.inv_inertia.map(number),
+            reference: Rot { c: number(self.reference.c), s: number(self.reference.s) },
+            arms: self.arms.map(vector),
+            gap: vector(self.gap),
+            angle: number(self.angle),
+            row: Row::new(&[], &[]),
+            impulse: vector(self.impulse),
+            late: Swing::none(),
+        }
+    }
+
+    /// |λ|·|r| of one lane, for A and B: what its pull turns them with, N·m·s.
+    pub(super) fn turning(&self, lane: usize) -> [f64; 2] {
+        let length = |v: Vec2<L>| v.x.to_array()[lane].to_f64().hypot(v.y.to_array()[lane].to_f64());
+        self.arms.map(|arm| length(arm) * length(self.impulse))
+    }
+
+    /// 1/(kg·m²) of A and B, in one lane.
+    pub(super) fn set_inv_inertia(&mut self, lane: usize, values: [f64; 2]) {
+        for (lanes, value) in self.inv_inertia.iter_mut().zip(values) {
+            let mut all = lanes.to_array();
+            all[lane] = L::Elem::from_f64(value);
+            *lanes = L::load(&all);
+        }
+    }
+
+    /// Adds to one lane's impulse, N·s, in units of v.
+    pub(super) fn add_impulse(&mut self, lane: usize, impulse: Vec2<f64>) {
+        for (lanes, change) in [(&mut self.impulse.x, impulse.x), (&mut self.impulse.y, impulse.y)] {
+            let mut values = lanes.to_array();
+            values[lane] = L::Elem::from_f64(values[lane].to_f64() + change);
+            *lanes = L::load(&values);
+        }
+    }
+
+    /// What the point's velocity is to be rid of: with bias where a push says how.
+    #[inline(always)]
+    pub(super) fn wanted(&self, a: &Side<L>, b: &Side<L>, how: Option<&Stiffness<L>>) -> Vec2<L> {
+        let slip = self.slip(a, b);
+        how.map_or(slip, |how| {
+            slip + (how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin)) + self.gap * how.bias_rate
+        })
+    }
+
+    /// From the centroid of A (0) or B (1), metres.
+    pub(super) fn arm(&self, end: usize) -> Vec2<L> {
+        self.arms[end]
+    }
+
+    /// Of A (0) or B (1).
+    pub(super) fn inv_inertia_of(&self, end: usize) -> L {
+        self.inv_inertia[end]
     }
 }
 
@@ -162,8 +233,7 @@ impl<L: Lanes> Linkage<L> for Pin<L> {
     #[inline(always)]
     fn push(&mut self, how: &Stiffness<L>, a: &mut Side<L>, b: &mut Side<L>) {
         let response = Response::new(self, a.inv_mass + b.inv_mass);
-        let bend = how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin);
-        let stop = response.solve(self.slip(a, b) + bend + self.gap * how.bias_rate);
+        let stop = response.solve(self.wanted(a, b, Some(how)));
         let held = self.impulse * how.share;
         // What the point alone would go to; the angle's row sees what that leaves, so that a soft point at rest
         // does not bend a weld.

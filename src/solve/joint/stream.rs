@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::direct::Direct;
 use super::pin::Pin;
 use super::rod::Rod;
 use super::row::Numbers;
@@ -19,7 +20,7 @@ const NOWHERE: u32 = u32::MAX;
 
 /// Batches of one shape.
 #[derive(Clone, Debug)]
-struct Batches<C> {
+pub(super) struct Batches<C> {
     links: Vec<C>,
     /// Places of joints, `WIDTH` entries per batch, as are `a` and `b`.
     place: Vec<u32>,
@@ -34,6 +35,21 @@ impl<C> Default for Batches<C> {
 }
 
 impl<C> Batches<C> {
+    /// Batch and lane of every joint, and the slots of its bodies A and B.
+    pub(super) fn ends(&self, width: usize) -> Vec<([usize; 2], [usize; 2])> {
+        let all = self.place.iter().zip(self.a.iter().zip(&self.b)).enumerate();
+        let real = all.filter(|(_, (place, _))| **place != NOWHERE);
+        real.map(|(k, (_, (a, b)))| ([k / width, k % width], [*a as usize, *b as usize])).collect()
+    }
+
+    pub(super) fn link(&self, batch: usize) -> &C {
+        &self.links[batch]
+    }
+
+    pub(super) fn link_mut(&mut self, batch: usize) -> &mut C {
+        &mut self.links[batch]
+    }
+
     fn clear(&mut self) {
         self.links.clear();
         self.place.clear();
@@ -140,6 +156,7 @@ pub struct JointStream<L: Lanes> {
     pins: Batches<Pin<L>>,
     rods: Batches<Rod<L>>,
     spans: Vec<Span>,
+    direct: Direct,
     made_from: MadeFrom,
 }
 
@@ -149,6 +166,7 @@ impl<L: Lanes> Default for JointStream<L> {
             pins: Batches::default(),
             rods: Batches::default(),
             spans: Vec::new(),
+            direct: Direct::default(),
             made_from: MadeFrom::default(),
         }
     }
@@ -224,6 +242,7 @@ impl<L: Lanes> JointStream<L> {
         for place in rods {
             self.append(&[], &[place], 1, sources);
         }
+        self.direct.look_over(&self.pins, bodies);
     }
 
     fn append(&mut self, pins: &[u32], rods: &[u32], width: usize, sources: &Sources<'_, L::Elem>) {
@@ -237,6 +256,7 @@ impl<L: Lanes> JointStream<L> {
     /// A step begins: arms, gaps and angles from the poses.
     pub fn place(&mut self, bodies: &Bodies<L::Elem>) {
         each!(self, |c, ends| { c.place(Pose::gather(bodies, [ends.a, ends.b])) });
+        self.direct.stiffen(&mut self.pins, bodies, self.made_from.h_secs);
     }
 
     /// Makes impulses `scale` times what they were and adds what they change velocities by, times `share`: with the
@@ -296,6 +316,16 @@ impl<L: Lanes> JointStream<L> {
                 joints.hold_at(place, held);
             }
         });
+    }
+
+    /// Joints that are solved directly; see [`super::direct`].
+    pub fn direct(&self) -> usize {
+        self.direct.len()
+    }
+
+    /// After [`JointStream::push`] (with how it was) or [`JointStream::relax`]: hard trees all at once.
+    pub(in crate::solve) fn solve_directly(&mut self, rows: &mut [[L::Elem; 4]], push: Option<&Stiffness<f64>>) {
+        self.direct.solve(&mut self.pins, rows, push);
     }
 
     /// Bytes of constraints and slots a pass streams.

@@ -1,0 +1,105 @@
+//! What a step ends with: bounces, and what was deep in something else moved out of it.
+
+use super::{Follow, Latest, Solving};
+use crate::contact::Manifolds;
+use crate::integrate::Motion;
+use crate::lanes::{Lanes, Real};
+use crate::settings::Solver;
+use crate::solve::{Task, bounce, deep, soft};
+
+impl<L: Lanes> Solving<L> {
+    /// After the last substep: bounces, and deep overlaps.
+    pub fn end(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) {
+        let settled = self.paces.count() > 1 || matches!(task.solver, Solver::Xpbd | Solver::Avbd);
+        if self.bouncing {
+            self.follow_pairs(task, manifolds, motion);
+            if self.bounce(task, motion, settled) && task.solver == Solver::Avbd {
+                self.stream.end_where(false, manifolds, None);
+            }
+        }
+        if self.deep && task.solver == Solver::Soft {
+            self.deep = self.part_deep(task, motion, settled);
+        }
+        self.latest = if task.solver == Solver::Avbd {
+            Latest::InPairs
+        } else if settled {
+            Latest::InConstraints
+        } else {
+            Latest::BeforeDisplacements
+        };
+    }
+
+    /// Gives bounces their impulses and displacements; says whether there were any.
+    fn bounce(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
+        let Self { displaced, stream, bounces, .. } = self;
+        let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours());
+        // Left as zeros by what was displaced before.
+        displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
+        let before = (!settled).then_some(moved);
+        let touch = L::lit(task.traits.touch());
+        let mut pass = bounce::Bounce { rows, displaced, touch, moved: before, bounces, any: false };
+        stream.visit(&mut pass);
+        if !pass.any {
+            return false;
+        }
+        stream.visit(&mut bounce::Part { rows, displaced, moved: before });
+        self.displace(motion, settled);
+        true
+    }
+
+    /// Moves what is deep in something else out of it; says whether anything is.
+    fn part_deep(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
+        let Self { displaced, stream, .. } = self;
+        let (rows, moved) = (motion.velocity.fours(), motion.moved.fours());
+        displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
+        let (deep, most) = (deep::DEEP * task.traits.length, soft::PUSH_CAP * task.traits.length);
+        let mut pass = deep::PartDeep {
+            rows,
+            displaced,
+            moved: (!settled).then_some(moved),
+            deep: L::lit(deep),
+            most: L::lit(most),
+            any: false,
+        };
+        stream.visit(&mut pass);
+        let any = pass.any;
+        if any {
+            self.displace(motion, settled);
+        }
+        any
+    }
+
+    /// Adds what was displaced to the step's displacements, and leaves zeros.
+    fn displace(&mut self, motion: &mut Motion<L::Elem>, settled: bool) {
+        let Self { displaced, stream, .. } = self;
+        if settled {
+            stream.visit(&mut Follow { moved: displaced });
+        }
+        for (moved, displaced) in motion.moved.fours_mut().iter_mut().zip(displaced) {
+            let changes = std::mem::replace(displaced, [L::Elem::ZERO; 4]);
+            for (way, change) in moved.iter_mut().zip(changes).take(3) {
+                *way += change;
+            }
+        }
+    }
+
+    /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
+    pub(super) fn follow_pairs(
+        &mut self,
+        task: &Task<'_, L::Elem>,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+    ) {
+        if task.solver == Solver::Avbd {
+            for &place in manifolds.touching() {
+                self.stream.touch(place);
+            }
+            self.stream.begin(manifolds, motion.matter.fours());
+        }
+    }
+}
