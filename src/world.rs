@@ -385,8 +385,8 @@ impl<L: Lanes> World<L> {
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
-            let length = task.traits.length;
-            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion, length);
+            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
+            solving.note_depth(self.narrow.deepest(), task.traits.length);
         }
         let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));

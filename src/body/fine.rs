@@ -70,16 +70,11 @@ impl<R: Real> Bodies<R> {
         R::from_f64(2.0 * R::EPSILON.to_f64() * self.slots().fold(0.0, far))
     }
 
-    /// Moves the bodies of one lane value.
+    /// Moves the bodies of one lane value, where positions are finer than their columns.
     #[inline(always)]
     pub(crate) fn move_lanes<L: Lanes<Elem = R>>(&mut self, at: usize, moved: [L; 2]) {
         let columns = [&mut self.x, &mut self.y];
-        let Some(rows) = &mut self.fine else {
-            for (column, moved) in columns.into_iter().zip(moved) {
-                column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + moved;
-            }
-            return;
-        };
+        let Some(rows) = &mut self.fine else { return };
         let rows = &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
         let mut rest = L::gather_fours(rows, &crate::lanes::IN_ORDER);
         for (k, column) in columns.into_iter().enumerate() {

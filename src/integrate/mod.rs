@@ -201,6 +201,7 @@ fn fly_with<L: Lanes, S: Scheme>(
 ) -> Skipped {
     let step = Step::new(plan.h_secs);
     let may_skip_rotation = plan.skips.has(Skip::Rotation);
+    let is_fine = bodies.fine.is_some();
     let mut skipped = Skipped::default();
     for at in block_starts::<L>(0..bodies.len()) {
         let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
@@ -241,8 +242,12 @@ fn fly_with<L: Lanes, S: Scheme>(
             turn_block(bodies, at, &angle);
             bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
         }
-        for (i, moved) in moved.iter().enumerate() {
-            bodies.move_lanes(at + i, [moved.x, moved.y]);
+        if is_fine {
+            for (i, moved) in moved.iter().enumerate() {
+                bodies.move_lanes(at + i, [moved.x, moved.y]);
+            }
+        } else {
+            store_block(&mut bodies.x, &mut bodies.y, at, &std::array::from_fn(|i| x[i] + moved[i]));
         }
         store_block(&mut bodies.vx, &mut bodies.vy, at, &v);
     }
@@ -412,6 +417,7 @@ pub fn finish<L: Lanes>(
 ) {
     let (bound, [half_swift, half_lively]) = (L::lit(STIR), speeds.map(|speed| L::lit(0.5 * speed)));
     let (mut any_stirred, mut any_swift, mut any_lively) = (0, 0, 0);
+    let is_fine = bodies.fine.is_some();
     let runs = std::mem::take(&mut motion.runs);
     for start in starts_in::<L>(&runs) {
         let mut angle = [L::zero(); BLOCK];
@@ -428,7 +434,13 @@ pub fn finish<L: Lanes>(
             for (column, value) in [(&mut bodies.vx, vx), (&mut bodies.vy, vy), (&mut bodies.w, w)] {
                 column.lanes_mut::<L>()[at] = value;
             }
-            bodies.move_lanes(at, [moved[0], moved[1]]);
+            if is_fine {
+                bodies.move_lanes(at, [moved[0], moved[1]]);
+            } else {
+                for (column, step) in [(&mut bodies.x, moved[0]), (&mut bodies.y, moved[1])] {
+                    column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
+                }
+            }
             angle[i] = moved[2];
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
             any_swift |= half_swift.le(speed).bits();

@@ -320,9 +320,11 @@ impl<R: Real> Narrow<R> {
         while at < todo.len {
             let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
             let places = &todo.place[at..at + L::WIDTH];
-            let a = Pose::gather(self.poses.rows(), slots[0]);
-            let b = Pose::gather(self.poses.rows(), slots[1]);
-            let (a, b) = if self.is_fine { self.seen_from_a(a, b, slots) } else { (a, b) };
+            let mut a = Pose::gather(self.poses.rows(), slots[0]);
+            let mut b = Pose::gather(self.poses.rows(), slots[1]);
+            if self.is_fine {
+                (a.x, b.x) = (Vec2::zero(), self.to_b_finely([a.x, b.x], slots));
+            }
             let margin = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
             let found = collide(&a, &b, slots, margin);
             if found.hits[0].any() {
@@ -346,17 +348,12 @@ impl<R: Real> Narrow<R> {
         self.deepest = gaps.iter().fold(self.deepest, |least, gap| least.min(gap.to_f64()));
     }
 
-    /// Positions finer than their columns: A is the origin.
-    #[inline(always)]
-    fn seen_from_a<L: Lanes<Elem = R>>(
-        &self,
-        a: Pose<L>,
-        b: Pose<L>,
-        slots: [&[u32]; 2],
-    ) -> (Pose<L>, Pose<L>) {
-        let rest = slots.map(|slots| L::gather_fours(self.fine.fours(), slots));
-        let to_b = fine_difference([a.x, b.x], rest);
-        (Pose { x: Vec2::zero(), ..a }, Pose { x: to_b, ..b })
+    /// From A to B, where positions are finer than their columns. Out of line: few worlds come here, and kernels keep
+    /// their registers (inlined it cost all of them 5 %).
+    #[cold]
+    #[inline(never)]
+    fn to_b_finely<L: Lanes<Elem = R>>(&self, centroids: [Vec2<L>; 2], slots: [&[u32]; 2]) -> Vec2<L> {
+        fine_difference(centroids, slots.map(|slots| L::gather_fours(self.fine.fours(), slots)))
     }
 
     #[inline(always)]

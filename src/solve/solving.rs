@@ -176,11 +176,8 @@ impl<L: Lanes> Solving<L> {
         narrow: &mut Narrow<L::Elem>,
         changed: bool,
         motion: &Motion<L::Elem>,
-        length: f64,
     ) {
         self.recut |= changed;
-        // Those whose manifolds are kept are looked at as a step ends.
-        self.deep |= narrow.deepest() < -deep::DEEP * length;
         if changed {
             self.coloring.run(bodies, &mut narrow.manifolds);
             self.stream.cut(&self.coloring, &narrow.manifolds, &self.paces);
@@ -192,6 +189,12 @@ impl<L: Lanes> Solving<L> {
             self.stream.age();
         }
         self.until_summed = 0;
+    }
+
+    /// Notes how deep the deepest of the pairs last looked at is, metres, negative; those that were not are looked at as a
+    /// step ends. `length`: the scene's median radius.
+    pub fn note_depth(&mut self, deepest: f64, length: f64) {
+        self.deep |= deepest < -deep::DEEP * length;
     }
 
     /// Forgets what constraints hold: the pairs they belong to are gone.
@@ -292,7 +295,7 @@ impl<L: Lanes> Solving<L> {
     pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
         let h_secs = task.plan.h_secs;
         // 1 to the bit where all steps have one length.
-        let softened = task.dt_secs / self.remembered_secs;
+        let softened = task.dt_secs / self.remembered_secs.max(task.dt_secs);
         let rows = motion.velocity.fours_mut();
         // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
         let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());

@@ -122,14 +122,14 @@ pub const CASES: &[Case] = &[
     case(
         ["t01_column", "T1", "a column of boxes 1 cm off stands and is still"],
         scenes::column,
-        counted("boxes", 15.0, [2.0, 400.0]),
+        counted("boxes", 15.0, [2.0, 128.0]),
         [60.0, 10.0],
         &[STANDS, STILL],
     ),
     case(
         ["t02_columns", "T2", "a tall column stands"],
         scenes::column,
-        counted("boxes", 80.0, [10.0, 640.0]),
+        counted("boxes", 80.0, [10.0, 320.0]),
         [60.0, 10.0],
         &[NOT_SUNK],
     ),
@@ -143,7 +143,7 @@ pub const CASES: &[Case] = &[
     case(
         ["t04_pyramid", "T4", "a pyramid does not drift"],
         scenes::pyramid,
-        counted("base", 100.0, [10.0, 200.0]),
+        counted("base", 100.0, [10.0, 100.0]),
         [60.0, 10.0],
         &[DRIFTS, NOT_SUNK],
     ),
@@ -243,7 +243,7 @@ pub const CASES: &[Case] = &[
     case(
         ["t17_pulled", "T17", "discs pulled to the centre do not explode"],
         scenes::pulled,
-        counted("bodies", 400.0, [10.0, 2000.0]),
+        counted("bodies", 400.0, [10.0, 1000.0]),
         [30.0, 10.0],
         &[at_most("energy gain over the first", 1e-3, gain)],
     ),
