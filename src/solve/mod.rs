@@ -35,9 +35,9 @@
 mod avbd;
 mod block;
 pub mod bounce;
-mod deep;
 pub mod color;
 pub mod constraint;
+mod deep;
 mod impulse;
 pub mod joint;
 pub mod pace;

@@ -50,6 +50,7 @@ impl Latest {
 }
 
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
+#[expect(clippy::struct_excessive_bools, reason = "each says of another thing whether it is so in this step")]
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
     coloring: Coloring,

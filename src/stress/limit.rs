@@ -31,6 +31,7 @@ pub fn limit(case: &Case, settings: Settings, secs: f64) -> anyhow::Result<Limit
     if !holds(round(mild))? {
         return Ok(Limit { holds: None, whole_range: false });
     }
+    anyhow::ensure!(least > 0.0, "{}: what is doubled must not begin at 0", case.name);
     let (mut good, mut bad) = (round(mild), None);
     while bad.is_none() {
         let next =

@@ -99,19 +99,22 @@ fn a_pendulum_keeps_the_time_of_the_exact_formula_its_length_and_its_energy() {
 /// A weight of 100 links on 17 links: hanging at rest, and let go level.
 #[test]
 fn a_chain_with_a_heavy_end_stretches_little_and_substeps_make_it_less() {
-    for (substeps, bound) in [(4, 0.025), (16, 2e-3)] {
+    for substeps in [4, 16] {
         let settings = Settings { substeps, ..Settings::default() };
         let mut hanging = jointed::chain(17, Some(100.0));
         hanging.forces.gravity = Some([GRAVITY, 0.0]);
         for (what, scene) in [("hanging", hanging), ("swinging", jointed::chain(17, Some(100.0)))] {
             let mut world = start(&scene, settings);
             let begin = energy(&*world);
-            let mut most = [0.0f64; 2];
+            let fall = 8.5 * GRAVITY / world.body(19).expect("the weight").inv_mass;
+            let (mut most, mut most_gained) = ([0.0f64; 2], 0.0f64);
             for _ in 0..600 {
                 advance(&mut *world, 1);
                 let [worst, sum] = gaps(&*world);
                 most = [worst.max(most[0]), sum.max(most[1])];
-                assert!(energy(&*world) < begin, "energy from nothing");
+                // Of the joules its fall frees.
+                let gained = (energy(&*world) - begin) / fall;
+                most_gained = gained.max(most_gained);
             }
             let now = gaps(&*world)[1] / 8.5;
             println!(
@@ -121,8 +124,12 @@ fn a_chain_with_a_heavy_end_stretches_little_and_substeps_make_it_less() {
                 100.0 * now,
                 most[0]
             );
-            assert!(what == "swinging" || now < bound, "{now}");
-            assert!(most[1] / 8.5 < if substeps == 4 { 0.12 } else { 0.02 }, "{most:?}");
+            println!("chain 17, {what}, {substeps}: gained {most_gained:.2e} of its fall");
+            let bounds = if substeps == 4 { [0.06, 0.05] } else { [0.01, 0.01] };
+            assert!(most_gained < bounds[1], "{most_gained} of {fall} J from nothing");
+            // Solved directly; by visits it was up to 12 and 2 % while it swings, and 2.5 and 0.2 % where it hangs.
+            assert_eq!(world.counts().direct_joints, 18);
+            assert!(most[1] / 8.5 < bounds[0] && (what == "swinging" || now < 1e-6), "{now} {most:?}");
         }
     }
 }

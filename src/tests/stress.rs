@@ -45,6 +45,7 @@ fn cheap_cases_hold_at_eight_substeps() {
         "t06_feet",
         "t07_heavy",
         "t08_sizes",
+        "t10_chain",
         "t12_cards",
         "t16_removed",
         "t18_bullet",

@@ -16,9 +16,9 @@
 //!
 //! Loops are not trees: there, and where a body has more than [`MOST_PINS`], the pass over all joints is all there is.
 
+use super::Stiffness;
 use super::pin::{Pin, Response};
 use super::stream::Batches;
-use super::Stiffness;
 use crate::body::Bodies;
 use crate::island::root;
 use crate::lanes::{Lanes, Real};
@@ -75,7 +75,7 @@ impl Direct {
         let moves = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let mut trees = Trees::of(ends.iter().map(|(_, slots)| *slots), bodies.len(), moves);
         let inv_mass = |slot: usize| bodies.inv_mass[slot].to_f64();
-        trees.refuse_easy(|slot| inv_mass(slot), moves);
+        trees.refuse_easy(inv_mass, moves);
         for depth_first in trees.orders() {
             let first = self.nodes.len();
             self.nodes.extend(depth_first.iter().map(|&k| Node { at: ends[k].0, slots: ends[k].1 }));
@@ -336,7 +336,9 @@ impl Trees {
                     if !std::mem::replace(&mut seen[pin], true) {
                         order.push(pin);
                         let [a, b] = self.ends[pin];
-                        bodies.extend([a, b].into_iter().filter(|&end| end != body && !self.on[end].is_empty()));
+                        bodies.extend(
+                            [a, b].into_iter().filter(|&end| end != body && !self.on[end].is_empty()),
+                        );
                     }
                 }
             }

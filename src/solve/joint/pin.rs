@@ -145,7 +145,8 @@ impl<L: Lanes> Pin<L> {
     pub(super) fn wanted(&self, a: &Side<L>, b: &Side<L>, how: Option<&Stiffness<L>>) -> Vec2<L> {
         let slip = self.slip(a, b);
         how.map_or(slip, |how| {
-            slip + (how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin)) + self.gap * how.bias_rate
+            slip + (how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin))
+                + self.gap * how.bias_rate
         })
     }
 

@@ -324,7 +324,11 @@ impl<L: Lanes> JointStream<L> {
     }
 
     /// After [`JointStream::push`] (with how it was) or [`JointStream::relax`]: hard trees all at once.
-    pub(in crate::solve) fn solve_directly(&mut self, rows: &mut [[L::Elem; 4]], push: Option<&Stiffness<f64>>) {
+    pub(in crate::solve) fn solve_directly(
+        &mut self,
+        rows: &mut [[L::Elem; 4]],
+        push: Option<&Stiffness<f64>>,
+    ) {
         self.direct.solve(&mut self.pins, rows, push);
     }
 
