@@ -306,7 +306,7 @@ pub const CASES: &[Case] = &[
         case(
             ["t23_tiny", "T23", "a small pyramid does what a large one does, in its own time"],
             scenes::scaled,
-            lowered("size", "m", 0.05, [1e-6, 1.0]),
+            lowered("size", "m", 0.05, [1e-3, 1.0]),
             [4.0, 2.0],
             &[],
         ),
