@@ -19,7 +19,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `record`, `processor` (feature `record`) | recordings, written and read; the check that programs make first |
-//! | `report`, `accuracy`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; run time against error; instruction counts; the program `lamina` |
+//! | `report`, `accuracy`, `stress`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; run time against error; where it breaks; instruction counts; the program `lamina` |
 //! | [`session`] | a run that is acted upon, and done again from its events |
 //! | [`simulation`] | a world of any precision and width behind one interface |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
@@ -40,12 +40,12 @@
 //! | joints | pose; joints where they have changed | arms, gaps and angles; batches |
 //! | begin | constraints, velocity | warm start per body, approaches that will bounce |
 //! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement |
-//! | per substep: solve | constraints of joints, then of contacts, rows | rows, impulses |
+//! | per substep: solve | constraints of joints (hard trees at once), then of contacts, rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
 //! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
-//! | end, finish | rows, displacement | velocity, position, attitude, who stirred, who is fast |
+//! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who stirred, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
-//! | measure | pose, velocity | finite check, counts |
+//! | measure | pose, velocity | finite check, counts; with bounds on speed or energy: those |
 //! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
 //!
 //! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
@@ -64,7 +64,7 @@
 //! 6. A kernel answers for each lane as if it were alone: which pairs share a batch changes nothing.
 //! 7. `unsafe` is forbidden; the library does no I/O but for reading a scene file it is asked for.
 //! 8. Bad input is refused where it enters, naming body, field and value; a state that turns non-finite
-//!    stops the run with step, body and stage.
+//!    stops the run with step, body and stage; so does, where a bound is set, a body that runs away or energy from nothing.
 //!
 //! # Conventions
 //! Normals point from A to B; metres, kilograms, seconds, radians; y up; angles counter-clockwise. A body

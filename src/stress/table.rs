@@ -126,13 +126,16 @@ pub const CASES: &[Case] = &[
         [60.0, 10.0],
         &[STANDS, STILL],
     ),
-    case(
-        ["t02_columns", "T2", "a tall column stands"],
-        scenes::column,
-        counted("boxes", 80.0, [10.0, 320.0]),
-        [60.0, 10.0],
-        &[NOT_SUNK],
-    ),
+    Case {
+        missed: "it stands for 10 s, as 104 boxes do, but sways (13 cm lower at 10 s), and falls within 60; avbd holds 320 for 10 s",
+        ..case(
+            ["t02_columns", "T2", "a tall column stands"],
+            scenes::column,
+            counted("boxes", 80.0, [10.0, 320.0]),
+            [60.0, 10.0],
+            &[NOT_SUNK],
+        )
+    },
     Case {
         missed: "columns that lean by 7 and 9 cm a box rest on edges, and one relaxation a substep does not settle them (three do); with 16 substeps all stand that statics let stand",
         ..case(
@@ -357,7 +360,7 @@ pub const CASES: &[Case] = &[
         case(
             ["t27_drift", "T27", "bodies drift straight for 100,000 steps"],
             scenes::drifting,
-            raised("speed", "m/s", 1.0, [1e-3, 1e3]),
+            raised("speed", "m/s", 1.0, [0.1, 1e3]),
             [1e5 / 60.0, 60.0],
             &[],
         ),
