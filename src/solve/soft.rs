@@ -67,7 +67,7 @@ impl<L: Lanes> Softness<L> {
     }
 }
 
-/// The pass before bodies move: normal impulses with bias; `DEEP`: something is, see [`super::deep`].
+/// The pass before bodies move: normal impulses with bias; `DEEP`: something is, see `deep.rs`.
 #[derive(Debug)]
 pub struct Push<'a, L: Lanes, const DEEP: bool> {
     /// Moving velocities u per slot: ux, uy, uω, 1/m.

@@ -7,7 +7,7 @@
 //! | `seen` | what a run was seen to do |
 //! | `own` | cases that compare runs, or vary the step |
 //! | [`run`](mod@run) | a case with one solver, number of substeps and precision |
-//! | [`limit`] | the number at which it breaks, by halving |
+//! | [`limit`](mod@limit) | the number at which it breaks, by halving |
 //!
 //! # Metrics
 //! | name | unit | what |

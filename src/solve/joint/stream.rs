@@ -318,7 +318,7 @@ impl<L: Lanes> JointStream<L> {
         });
     }
 
-    /// Joints that are solved directly; see [`super::direct`].
+    /// Joints that are solved directly; see `direct.rs`.
     pub fn direct(&self) -> usize {
         self.direct.len()
     }
