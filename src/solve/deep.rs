@@ -12,8 +12,12 @@ use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
 use crate::lanes::{LaneMask, Lanes};
 
-/// Overlaps over this share of the scene's median radius are deep; piles sag by less.
+/// Overlaps over this share of the scene's median radius are deep, where bodies have just come or changed. What sinks into
+/// something under a load is not treated so: a pile of 10,000 that fell with 2 substeps lost its springs' push and
+/// collapsed (0.2 m of overlap on average instead of 0.02).
 pub(super) const DEEP: f64 = 0.03;
+/// Steps for which deep points are moved apart after bodies have come.
+pub(super) const STEPS: u32 = 120;
 
 /// The pass that moves deep points apart.
 #[derive(Debug)]

@@ -50,7 +50,6 @@ impl Latest {
 }
 
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
-#[expect(clippy::struct_excessive_bools, reason = "each says of another thing whether it is so in this step")]
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
     coloring: Coloring,
@@ -79,8 +78,8 @@ pub struct Solving<L: Lanes> {
     lively: bool,
     /// Something bounces in this step.
     bouncing: bool,
-    /// Something was deep in something else when last looked at; see [`deep`].
-    deep: bool,
+    /// Steps for which deep points are moved apart; see [`deep`].
+    deep: u32,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
@@ -109,7 +108,7 @@ impl<L: Lanes> Default for Solving<L> {
             latest: Latest::default(),
             lively: false,
             bouncing: false,
-            deep: false,
+            deep: 0,
             until_summed: 0,
         }
     }
@@ -195,7 +194,9 @@ impl<L: Lanes> Solving<L> {
     /// Notes how deep the deepest of the pairs last looked at is, metres, negative; those that were not are looked at as a
     /// step ends. `length`: the scene's median radius.
     pub fn note_depth(&mut self, deepest: f64, length: f64) {
-        self.deep |= deepest < -deep::DEEP * length;
+        if deepest < -deep::DEEP * length {
+            self.deep = deep::STEPS;
+        }
     }
 
     /// Forgets what constraints hold: the pairs they belong to are gone.
@@ -317,7 +318,7 @@ impl<L: Lanes> Solving<L> {
                 let soft = Softness::new(h_secs, soft, soft::DAMPING, cap);
                 let deep = L::lit(-deep::DEEP * task.traits.length);
                 let [share, per_share] = [share, 1.0 / share].map(L::lit);
-                if self.deep {
+                if self.deep > 0 {
                     stream.visit(&mut soft::Push::<L, true> { rows, moved, soft, deep, share, per_share });
                 } else {
                     stream.visit(&mut soft::Push::<L, false> { rows, moved, soft, deep, share, per_share });

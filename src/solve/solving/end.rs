@@ -22,8 +22,8 @@ impl<L: Lanes> Solving<L> {
                 self.stream.end_where(false, manifolds, None);
             }
         }
-        if self.deep && task.solver == Solver::Soft {
-            self.deep = self.part_deep(task, motion, settled);
+        if self.deep > 0 && task.solver == Solver::Soft {
+            self.deep = if self.part_deep(task, motion, settled) { self.deep - 1 } else { 0 };
         }
         self.latest = if task.solver == Solver::Avbd {
             Latest::InPairs
