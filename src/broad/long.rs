@@ -153,7 +153,8 @@ impl<R: Real> LongBodies<R> {
         other: u32,
         pairs: &mut Vec<[u32; 2]>,
     ) {
-        if other == bound.slot {
+        // A reach that overflows covers padding too.
+        if other == bound.slot || other as usize >= bodies.len() {
             return;
         }
         if let Ok(at) = self.bounds.binary_search_by_key(&other, |b| b.slot) {

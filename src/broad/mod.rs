@@ -54,7 +54,9 @@ pub(crate) struct Circles<R: Real> {
 
 impl<R: Real> Circles<R> {
     fn new() -> Self {
-        Self { x: Column::new(R::FAR), y: Column::new(R::FAR), r: Column::new(R::ZERO), slot: Vec::new() }
+        // Padding is nowhere: a reach that overflows covers whatever is far.
+        let nowhere = R::from_f64(f64::NAN);
+        Self { x: Column::new(nowhere), y: Column::new(nowhere), r: Column::new(R::ZERO), slot: Vec::new() }
     }
 
     fn len(&self) -> usize {

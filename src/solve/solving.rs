@@ -234,7 +234,8 @@ impl<L: Lanes> Solving<L> {
         let [h_secs, share] = [task.dt_secs / f64::from(substeps), task.plan.impulse_share()];
         let last = std::mem::replace(&mut self.last_joint_h_secs, h_secs);
         self.joint_scale = if last > 0.0 { h_secs / last } else { 1.0 };
-        self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0 }, awake.1);
+        let direct = task.solver == Solver::Soft;
+        self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0, direct }, awake.1);
         self.joints.place(bodies);
     }
 
@@ -423,7 +424,7 @@ impl<L: Lanes> Solving<L> {
         self.joints.end(joints);
     }
 
-    /// Joints solved directly in a step of this solver.
+    /// Joints that are solved directly.
     pub fn direct_joints(&self) -> usize {
         self.joints.direct()
     }

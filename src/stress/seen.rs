@@ -4,7 +4,6 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::measure::Penetration;
 use crate::scene::{BodyKind, Scene};
-use crate::settings::Solver;
 use crate::simulation::{BodyState, Simulation};
 
 /// Looks at overlaps in the second half.
@@ -161,8 +160,7 @@ impl Watch {
     pub(super) fn finish(mut self, world: &dyn Simulation, failed: Option<String>) -> Seen {
         let seen = &mut self.seen;
         seen.sums[1] = world.invariants();
-        seen.direct_joints =
-            if world.settings().solver == Solver::Soft { world.counts().direct_joints } else { 0 };
+        seen.direct_joints = world.counts().direct_joints;
         seen.metrics.jit = if self.samples > 0.0 { (self.squares / self.samples).sqrt() } else { 0.0 };
         seen.metrics.drift = farthest(&seen.half, &seen.end, &seen.kinds);
         seen.metrics.settle_secs = self.slow_since;

@@ -2,10 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod common_joints;
 mod common_motion;
 
 use std::f64::consts::TAU;
 
+use common_joints::{DT_SECS, GRAVITY, advance, energy, gaps, in_f64};
 use common_motion::{at_every_width, disc, scene_of, start};
 use lamina2d::body::BodyId;
 use lamina2d::force::Forces;
@@ -14,36 +16,11 @@ use lamina2d::joint::{
 };
 use lamina2d::lanes::{f32s, f64s};
 use lamina2d::scene::{BodySpec, Scene, ShapeSpec, by_name, jointed};
-use lamina2d::settings::{Precision, Settings, Solver};
-use lamina2d::simulation::Simulation;
+use lamina2d::settings::{Settings, Solver};
 use lamina2d::world::World;
-
-const DT_SECS: f64 = 1.0 / 60.0;
-const GRAVITY: f64 = 9.81;
-
-fn in_f64() -> Settings {
-    Settings::default().with_precision(Precision::F64)
-}
 
 fn with_joints(bodies: Vec<BodySpec>, joints: Vec<JointSpec>, forces: Forces) -> Scene {
     Scene { joints, ..scene_of(bodies, forces) }
-}
-
-fn advance(world: &mut dyn Simulation, steps: usize) {
-    for _ in 0..steps {
-        world.step(DT_SECS).unwrap();
-    }
-}
-
-/// How far the anchors of hinges and welds are apart: the most, and all together, metres.
-fn gaps(world: &dyn Simulation) -> [f64; 2] {
-    let apart = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
-    world.joint_anchors().into_iter().map(apart).fold([0.0, 0.0], |[most, sum], d| [d.max(most), sum + d])
-}
-
-fn energy(world: &dyn Simulation) -> f64 {
-    let sums = world.invariants();
-    sums.kinetic_energy + sums.potential_energy
 }
 
 /// Half a period from a quarter turn: T = 2π·√(L/g)/AGM(1, cos ½θ₀), Gauss.
@@ -94,98 +71,6 @@ fn a_pendulum_keeps_the_time_of_the_exact_formula_its_length_and_its_energy() {
         assert!(late.abs() < bounds[0] && stretch < bounds[1], "{late} {stretch}");
         assert!(gained < bounds[2] * GRAVITY, "{gained} J above the start");
     }
-}
-
-/// A weight of 100 links on 17 links: hanging at rest, and let go level.
-#[test]
-fn a_chain_with_a_heavy_end_stretches_little_and_substeps_make_it_less() {
-    for substeps in [4, 16] {
-        let settings = Settings { substeps, ..Settings::default() };
-        let mut hanging = jointed::chain(17, Some(100.0));
-        hanging.forces.gravity = Some([GRAVITY, 0.0]);
-        for (what, scene) in [("hanging", hanging), ("swinging", jointed::chain(17, Some(100.0)))] {
-            let mut world = start(&scene, settings);
-            let begin = energy(&*world);
-            let fall = 8.5 * GRAVITY / world.body(19).expect("the weight").inv_mass;
-            let (mut most, mut most_gained) = ([0.0f64; 2], 0.0f64);
-            for _ in 0..600 {
-                advance(&mut *world, 1);
-                let [worst, sum] = gaps(&*world);
-                most = [worst.max(most[0]), sum.max(most[1])];
-                // Of the joules its fall frees.
-                let gained = (energy(&*world) - begin) / fall;
-                most_gained = gained.max(most_gained);
-            }
-            let now = gaps(&*world)[1] / 8.5;
-            println!(
-                "chain 17, 100:1, {what}, {substeps} substeps: stretched by {:.3} % at most, {:.3} % in the end, \
-                 {:.2e} m in one joint",
-                100.0 * most[1] / 8.5,
-                100.0 * now,
-                most[0]
-            );
-            println!("chain 17, {what}, {substeps}: gained {most_gained:.2e} of its fall");
-            let bounds = if substeps == 4 { [0.06, 0.05] } else { [0.01, 0.01] };
-            assert!(most_gained < bounds[1], "{most_gained} of {fall} J from nothing");
-            // Solved directly; by visits it was up to 12 and 2 % while it swings, and 2.5 and 0.2 % where it hangs.
-            assert_eq!(world.counts().direct_joints, 18);
-            assert!(most[1] / 8.5 < bounds[0] && (what == "swinging" || now < 1e-6), "{now} {most:?}");
-        }
-    }
-}
-
-#[test]
-fn chains_bridges_and_nets_come_to_no_harm() {
-    for name in ["chain/1", "chain/30", "chain/200", "bridge/40", "joint_grid/20"] {
-        for &solver in Solver::ALL {
-            let scene = by_name(name, None, 1).unwrap();
-            let mut world = start(&scene, Settings { solver, ..Settings::default() });
-            let begin = energy(&*world);
-            let (mut worst, mut gained) = (0.0f64, f64::MIN);
-            for _ in 0..300 {
-                advance(&mut *world, 1);
-                worst = worst.max(gaps(&*world)[0]);
-                gained = gained.max(energy(&*world) - begin);
-            }
-            println!("{name} {solver}: gap {worst:.2e} m at most, energy {gained:+.2e} J");
-            // A chain of 200 pulls its first links with 200 times the load of a pendulum.
-            let allowed =
-                if solver == Solver::Impulse { 1.0 } else { f64::max(0.1, 1e-3 * scene.bodies.len() as f64) };
-            assert!(worst < allowed, "{name} {solver}: {worst} m apart");
-            let scale = scene.bodies.len() as f64 * GRAVITY * 0.046;
-            assert!(gained < 0.02 * scale, "{name} {solver}: {gained} J from nothing");
-        }
-    }
-}
-
-/// tan θᵢ = w(N + 1 − 2i)/2H with Σ ℓ cos θᵢ = span: each plank's ends pull with the same horizontal H.
-#[test]
-fn a_bridge_hangs_in_the_shape_of_statics() {
-    let planks = 10;
-    let mut scene = by_name("bridge/10", None, 1).unwrap();
-    scene.forces.linear_drag = Some(0.2);
-    let mut world = start(&scene, Settings { substeps: 64, ..in_f64() });
-    advance(&mut *world, 1200);
-    let anchors = world.joint_anchors();
-    let span = anchors[planks][1][0] - anchors[0][0][0];
-    let slope =
-        |i: usize, weight_over_pull: f64| 0.5 * weight_over_pull * (planks as f64 + 1.0 - 2.0 * i as f64);
-    let width = |ratio: f64| (1..=planks).map(|i| 0.5 / slope(i, ratio).hypot(1.0)).sum::<f64>();
-    let (mut low, mut high) = (0.0, 10.0);
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if width(middle) > span { low = middle } else { high = middle }
-    }
-    let (mut x, mut y, mut worst) = (anchors[0][0][0], anchors[0][0][1], 0.0f64);
-    for i in 1..=planks {
-        let slope = slope(i, low);
-        x += 0.5 / slope.hypot(1.0);
-        y -= 0.5 * slope / slope.hypot(1.0);
-        let [at_x, at_y] = anchors[i][0];
-        worst = worst.max((at_x - x).hypot(at_y - y));
-    }
-    println!("bridge/10: {worst:.2e} m from statics");
-    assert!(worst < 1e-4 * 5.0, "{worst} m from the shape of statics");
 }
 
 fn hinge(anchor: [f64; 2], motor: Option<Motor>, limits: Option<Limits>) -> JointKind {
@@ -397,24 +282,6 @@ fn a_hub_of_a_hundred_joints_is_the_same_at_every_width() {
     for lanes in [4, 8, 16] {
         assert_eq!(end(Settings { lanes, ..Settings::default() }), narrow);
     }
-}
-
-/// In f32, where places 10 km out are known to a millimetre.
-#[test]
-fn a_chain_far_from_the_origin_holds_together() {
-    let mut scene = jointed::chain(10, None);
-    for body in &mut scene.bodies {
-        body.position[0] += 1e4;
-    }
-    for joint in &mut scene.joints {
-        if let JointKind::Revolute(hinge) = &mut joint.kind {
-            hinge.anchor[0] += 1e4;
-        }
-    }
-    let mut world = start(&scene, Settings::default());
-    advance(&mut *world, 300);
-    let [worst, _] = gaps(&*world);
-    assert!(worst < 0.02, "{worst} m apart");
 }
 
 fn id_of(world: &World<f32s::X8>, slot: usize) -> BodyId {

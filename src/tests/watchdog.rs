@@ -2,11 +2,11 @@
 
 mod common_motion;
 
-use common_motion::{DT_SECS, at_every_width, disc, scene_of, start};
+use common_motion::{DT_SECS, at_every_width, at_widths, disc, scatter, scene_of, start};
 use lamina2d::force::{Forces, Spring};
 use lamina2d::measure::Stage;
 use lamina2d::scene::{BodySpec, ShapeSpec, by_name};
-use lamina2d::settings::{Integrator, Settings, SettingsError};
+use lamina2d::settings::{Broad, Integrator, Precision, Settings, SettingsError};
 use lamina2d::simulation::Simulation;
 use lamina2d::world::{StepError, WATCHED_EVERY};
 
@@ -45,6 +45,28 @@ fn a_speed_that_the_solver_made_is_laid_at_its_door() {
     let error = until_refused(world.as_mut(), 60).expect("the light one leaves at nearly 8 m/s");
     let StepError::Runaway { slot, stage, .. } = error else { panic!("{error}") };
     assert_eq!((slot, stage), (1, Stage::Solve));
+}
+
+/// Squares of such speeds overflow in f32: each body then reaches for every other.
+#[test]
+fn bodies_faster_than_squares_can_be_end_in_an_error_or_not_but_in_no_panic() {
+    for (speed, broad) in
+        [1e16, 1e20, 1e30, 3e38].into_iter().flat_map(|v| Broad::ALL.iter().map(move |b| (v, *b)))
+    {
+        let one = |k: usize| {
+            let shape = if k % 3 == 0 { ShapeSpec::Box([0.5, 0.1]) } else { ShapeSpec::Circle(0.2) };
+            let way = [scatter(k, 1) * speed, scatter(k, 2) * speed];
+            BodySpec::new(shape, [0.3 * k as f64, 0.0]).moving(way, 0.0)
+        };
+        let scene = scene_of((0..19).map(one).collect(), Forces::gravity());
+        for settings in at_widths(Settings { broad, ..Settings::default() }, Precision::F32) {
+            let mut world = start(&scene, settings);
+            match until_refused(world.as_mut(), 8) {
+                None => assert!(world.invariants().kinetic_energy > 0.0),
+                Some(error) => assert!(matches!(error, StepError::NonFinite { .. }), "{error}"),
+            }
+        }
+    }
 }
 
 #[test]

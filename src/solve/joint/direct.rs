@@ -2,7 +2,7 @@
 //!
 //! One visit a substep carries a weight's pull one joint further; a chain of 50 links that carries 50,000 times a link
 //! needs thousands, and without them impulses swing up until numbers end. Where the pins of some bodies make up a tree
-//! with masses [`HARD_RATIO`] apart, all its points are therefore solved at once after the pass over all joints, without
+//! whose masses are too far apart for its length ([`HARD_RATIO`], [`HARD_LOAD`]), all its points are therefore solved at once after the pass over all joints, without
 //! softness: (J·M⁻¹·Jᵀ)·Δλ = −(J·v + bias), in `f64`. The matrix has a 2×2 block for each two pins that share a body;
 //! pins are eliminated from the leaves to the root, so that what is left of a pin's neighbours already has blocks, and
 //! no others come to be (Davis, Direct Methods for Sparse Linear Systems, 2006, §4.1: a perfect order). Work grows with
@@ -12,7 +12,11 @@
 //! are those of the substep's beginning: beyond ωh = 2 that blows up, however exactly impulses are solved. So a link
 //! turns as if it had h²·Σ T·|r| more inertia, which bounds ωh by 1: the diagonal of the geometric stiffness (Andrews,
 //! Teichmann and Kry, Geometric Stiffness for Real-time Constrained Multibody Dynamics, 2017). Motions slower than
-//! substeps are moved little by it; faster ones were not resolved.
+//! substeps are moved little by it; faster ones were not resolved. T is what the substep's own solve finds, which is
+//! therefore done twice: with the pull of the substep before, a chain that snaps taut was thrown by up to 0.9 of its
+//! fall's energy. Inertia that comes at once must not come with a spin it was never given: where it grows by more than
+//! [`BRAKED`] the angular momentum stays, and energy is lost, as in any impact. (Braked at every growth, swings lost
+//! 0.5 % of their energy; never, some chains still blew up.)
 //!
 //! Loops are not trees: there, and where a body has more than [`MOST_PINS`], the pass over all joints is all there is.
 
@@ -26,10 +30,18 @@ use crate::scene::BodyKind;
 use crate::solve::constraint::Side;
 use crate::vec2::Vec2;
 
-/// Masses so far apart are too far for visits.
-pub(super) const HARD_RATIO: f64 = 64.0;
+/// Masses so far apart are too far for visits, in a tree of any size.
+const HARD_RATIO: f64 = 64.0;
+/// Where the heaviest is at least [`HARD_FROM`] times the lightest: this ratio times the square of the number of pins is
+/// too much, as an error crosses n pins in n² visits.
+const HARD_LOAD: f64 = 4096.0;
+/// Chains of equal links are left to visits, however long.
+const HARD_FROM: f64 = 1.5;
 /// Pins on one body that a tree is solved with: blocks grow with their square.
-pub(super) const MOST_PINS: usize = 8;
+const MOST_PINS: usize = 8;
+
+/// A link's inertia that becomes this much greater in a solve slows its spin.
+const BRAKED: f64 = 1.0 / 0.9;
 
 /// 2×2, by rows.
 type Block = [[f64; 2]; 2];
@@ -40,6 +52,26 @@ struct Node {
     /// Batch and lane.
     at: [usize; 2],
     slots: [usize; 2],
+}
+
+/// How a body of a tree turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Turning {
+    /// 1/(kg·m²), its own.
+    inv_inertia: f64,
+    /// Inertia that its pins' pulls add, kg·m².
+    borne: f64,
+    /// What its pins have turned it with in this substep, N·m·s.
+    torque: f64,
+    /// 1/(kg·m²) by which it has turned so far.
+    before: f64,
+}
+
+impl Turning {
+    /// 1/(kg·m²), what its pulls add counted in.
+    fn now(&self) -> f64 {
+        self.inv_inertia / (1.0 + self.inv_inertia * self.borne)
+    }
 }
 
 /// All trees that are solved directly; memory is kept.
@@ -53,8 +85,8 @@ pub(super) struct Direct {
     own: Vec<(Block, [f64; 2])>,
     answer: Vec<[f64; 2]>,
     pins: Vec<Pin<f64>>,
-    /// Inertia that pulls add, by slot, kg·m².
-    pulls: Vec<f64>,
+    /// By slot.
+    turning: Vec<Turning>,
 }
 
 impl Direct {
@@ -70,10 +102,14 @@ impl Direct {
 
     /// Finds the trees among the pins in these batches that masses make hard.
     pub(super) fn look_over<L: Lanes>(&mut self, pins: &Batches<Pin<L>>, bodies: &Bodies<L::Elem>) {
-        self.clear();
         let ends = pins.ends(L::WIDTH);
         let moves = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let mut trees = Trees::of(ends.iter().map(|(_, slots)| *slots), bodies.len(), moves);
+        self.turning.clear();
+        self.turning.resize(bodies.len(), Turning::default());
+        for slot in 0..bodies.len() {
+            self.turning[slot].inv_inertia = bodies.inv_inertia[slot].to_f64();
+        }
         let inv_mass = |slot: usize| bodies.inv_mass[slot].to_f64();
         trees.refuse_easy(inv_mass, moves);
         for depth_first in trees.orders() {
@@ -90,36 +126,74 @@ impl Direct {
         }
     }
 
-    /// Gives bodies of all trees the inertia with which their pulls are borne for substeps of `h_secs`.
-    pub(super) fn stiffen<L: Lanes>(
-        &mut self,
-        pins: &mut Batches<Pin<L>>,
-        bodies: &Bodies<L::Elem>,
-        h_secs: f64,
-    ) {
-        let Self { nodes, pulls, .. } = self;
-        if nodes.is_empty() {
-            return;
+    /// A step begins: bodies of all trees turn with the inertia that the last impulses, of substeps of `h_secs`, add.
+    pub(super) fn stiffen<L: Lanes>(&mut self, pins: &mut Batches<Pin<L>>, h_secs: f64) {
+        self.look_at(pins);
+        self.answer.clear();
+        self.answer.resize(self.nodes.len(), [0.0; 2]);
+        self.feel_pulls(h_secs, 1.0);
+        self.hand_inertia(pins);
+    }
+
+    /// Pins as they are now.
+    fn look_at<L: Lanes>(&mut self, pins: &Batches<Pin<L>>) {
+        self.pins.clear();
+        self.pins.extend(self.nodes.iter().map(|node| pins.link(node.at[0]).lane(node.at[1])));
+    }
+
+    /// Sums what impulses, those solved for counted in, bodies turn with.
+    fn feel_pulls(&mut self, h_secs: f64, share: f64) {
+        let Self { nodes, answer, pins, turning, .. } = self;
+        for slot in nodes.iter().flat_map(|node| node.slots) {
+            turning[slot].before = turning[slot].now();
         }
-        pulls.clear();
-        pulls.resize(bodies.len(), 0.0);
-        for node in &*nodes {
-            let turning = pins.link(node.at[0]).turning(node.at[1]);
-            for (slot, turning) in node.slots.iter().zip(turning) {
-                pulls[*slot] += h_secs * turning;
+        for slot in nodes.iter().flat_map(|node| node.slots) {
+            (turning[slot].borne, turning[slot].torque) = (0.0, 0.0);
+        }
+        let length = |v: Vec2<f64>| v.length_squared().sqrt();
+        for ((node, answer), pin) in nodes.iter().zip(answer).zip(pins) {
+            let given = pin.impulse();
+            let pull = length(given + Vec2::new(answer[0], answer[1]) * (1.0 / share));
+            for (end, sign) in [(0, -1.0), (1, 1.0)] {
+                let (arm, body) = (pin.arm(end), &mut turning[node.slots[end]]);
+                body.borne += h_secs * (pull * length(arm));
+                body.torque += sign * share * arm.cross(given);
             }
         }
-        for node in &*nodes {
-            let inv_inertia = node.slots.map(|slot| {
-                let own = bodies.inv_inertia[slot].to_f64();
-                own / (1.0 + own * pulls[slot])
-            });
+    }
+
+    fn hand_inertia<L: Lanes>(&self, pins: &mut Batches<Pin<L>>) {
+        for node in &self.nodes {
+            let inv_inertia = node.slots.map(|slot| self.turning[slot].now());
             pins.link_mut(node.at[0]).set_inv_inertia(node.at[1], inv_inertia);
         }
     }
 
-    /// Makes the points of all trees stand still, but for `bias` times their gaps, 1/s; `share`: what an impulse changes
-    /// these rows by, over what it changes velocities by.
+    /// Bodies turn with the inertia that the impulses just solved for add.
+    fn restiffen<L: Lanes>(
+        &mut self,
+        pins: &mut Batches<Pin<L>>,
+        rows: &mut [[L::Elem; 4]],
+        how: &Stiffness<f64>,
+    ) {
+        self.feel_pulls(how.h, how.share());
+        for slot in self.nodes.iter().flat_map(|node| node.slots) {
+            let (body, spin) = (&mut self.turning[slot], rows[slot][2].to_f64());
+            let now = body.now();
+            // The second time that a body is met nothing has changed.
+            let before = std::mem::replace(&mut body.before, now);
+            let spin = if now * BRAKED < before {
+                spin * (now / before)
+            } else {
+                // What its impulses are worth now.
+                spin + body.torque * (now - before)
+            };
+            rows[slot][2] = L::Elem::from_f64(spin);
+        }
+        self.hand_inertia(pins);
+    }
+
+    /// Makes the points of all trees stand still, or close their gaps as a push says.
     pub(super) fn solve<L: Lanes>(
         &mut self,
         pins: &mut Batches<Pin<L>>,
@@ -132,6 +206,11 @@ impl Direct {
         let share = how.map_or(1.0, Stiffness::share);
         self.assemble(pins, rows, how);
         self.eliminate();
+        if let Some(how) = how {
+            self.restiffen(pins, rows, how);
+            self.assemble(pins, rows, Some(how));
+            self.eliminate();
+        }
         for ((node, answer), pin) in self.nodes.iter().zip(&self.answer).zip(&mut self.pins) {
             let [batch, lane] = node.at;
             let [mut a, mut b] = node.slots.map(|slot| side(rows, slot));
@@ -150,9 +229,8 @@ impl Direct {
         rows: &[[L::Elem; 4]],
         how: Option<&Stiffness<f64>>,
     ) {
+        self.look_at(pins);
         let Self { nodes, later, own, pins: now, .. } = self;
-        now.clear();
-        now.extend(nodes.iter().map(|node| pins.link(node.at[0]).lane(node.at[1])));
         own.clear();
         for (at, (node, pin)) in nodes.iter().zip(&*now).enumerate() {
             let [a, b] = node.slots.map(|slot| side(rows, slot));
@@ -309,14 +387,19 @@ impl Trees {
     /// Leaves those alone whose masses are near each other.
     fn refuse_easy(&mut self, inv_mass: impl Fn(usize) -> f64, moves: impl Fn(usize) -> bool) {
         let mut spans = vec![[f64::INFINITY, 0.0f64]; self.on.len()];
+        let mut pins = vec![0.0f64; self.on.len()];
         for slot in (0..self.on.len()).filter(|&slot| moves(slot) && !self.on[slot].is_empty()) {
             let tree = root(&mut self.parent, slot as u32) as usize;
             let span = &mut spans[tree];
             *span = [span[0].min(inv_mass(slot)), span[1].max(inv_mass(slot))];
             self.wanted[tree] &= self.on[slot].len() <= MOST_PINS;
+            // As many as bodies, or one more or less.
+            pins[tree] += 1.0;
         }
-        for (wanted, [least, most]) in self.wanted.iter_mut().zip(spans) {
-            *wanted &= least.is_finite() && most >= HARD_RATIO * least;
+        for ((wanted, [least, most]), pins) in self.wanted.iter_mut().zip(spans).zip(pins) {
+            let ratio = most / least;
+            let hard = ratio >= HARD_RATIO || (ratio >= HARD_FROM && ratio * pins * pins >= HARD_LOAD);
+            *wanted &= least.is_finite() && hard;
         }
     }
 

@@ -116,12 +116,6 @@ impl<L: Lanes> Pin<L> {
         }
     }
 
-    /// |λ|·|r| of one lane, for A and B: what its pull turns them with, N·m·s.
-    pub(super) fn turning(&self, lane: usize) -> [f64; 2] {
-        let length = |v: Vec2<L>| v.x.to_array()[lane].to_f64().hypot(v.y.to_array()[lane].to_f64());
-        self.arms.map(|arm| length(arm) * length(self.impulse))
-    }
-
     /// 1/(kg·m²) of A and B, in one lane.
     pub(super) fn set_inv_inertia(&mut self, lane: usize, values: [f64; 2]) {
         for (lanes, value) in self.inv_inertia.iter_mut().zip(values) {
@@ -148,6 +142,11 @@ impl<L: Lanes> Pin<L> {
             slip + (how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin))
                 + self.gap * how.bias_rate
         })
+    }
+
+    /// On B, N·s per substep, in units of v.
+    pub(super) fn impulse(&self) -> Vec2<L> {
+        self.impulse
     }
 
     /// From the centroid of A (0) or B (1), metres.

@@ -121,6 +121,8 @@ pub struct Sources<'a, R: Real> {
     pub share: f64,
     /// By slot; a joint without an end that is awake has no constraint. `None`: all are.
     pub awake: Option<&'a [bool]>,
+    /// Hard trees are to be solved directly.
+    pub direct: bool,
 }
 
 impl<R: Real> Sources<'_, R> {
@@ -148,6 +150,7 @@ struct MadeFrom {
     h_secs: f64,
     share: f64,
     groupings: u64,
+    direct: bool,
 }
 
 /// All joints in batches of lanes, colour by colour; memory is kept from step to step.
@@ -196,14 +199,14 @@ impl<L: Lanes> JointStream<L> {
     /// Colours and constraints, where their sources are others than those they were made from; `groupings`: how often
     /// who is awake has changed.
     pub fn prepare(&mut self, sources: &Sources<'_, L::Elem>, groupings: u64) {
-        let Sources { joints, bodies, h_secs, share, awake } = *sources;
-        let from =
-            MadeFrom { joints: joints.revision(), bodies: bodies.revision(), h_secs, share, groupings };
+        let Sources { joints, bodies, h_secs, share, awake, direct } = *sources;
+        let (of_joints, of_bodies) = (joints.revision(), bodies.revision());
+        let from = MadeFrom { joints: of_joints, bodies: of_bodies, h_secs, share, groupings, direct };
         let last = std::mem::replace(&mut self.made_from, from);
         if last == from || (joints.is_empty() && self.is_empty()) {
             return;
         }
-        if (last.joints, last.bodies, last.groupings) == (from.joints, from.bodies, groupings) {
+        if last == (MadeFrom { h_secs: last.h_secs, share: last.share, ..from }) {
             self.pins.retune(sources);
             self.rods.retune(sources);
             return;
@@ -242,7 +245,10 @@ impl<L: Lanes> JointStream<L> {
         for place in rods {
             self.append(&[], &[place], 1, sources);
         }
-        self.direct.look_over(&self.pins, bodies);
+        self.direct.clear();
+        if direct {
+            self.direct.look_over(&self.pins, bodies);
+        }
     }
 
     fn append(&mut self, pins: &[u32], rods: &[u32], width: usize, sources: &Sources<'_, L::Elem>) {
@@ -256,7 +262,7 @@ impl<L: Lanes> JointStream<L> {
     /// A step begins: arms, gaps and angles from the poses.
     pub fn place(&mut self, bodies: &Bodies<L::Elem>) {
         each!(self, |c, ends| { c.place(Pose::gather(bodies, [ends.a, ends.b])) });
-        self.direct.stiffen(&mut self.pins, bodies, self.made_from.h_secs);
+        self.direct.stiffen(&mut self.pins, self.made_from.h_secs);
     }
 
     /// Makes impulses `scale` times what they were and adds what they change velocities by, times `share`: with the
