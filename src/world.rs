@@ -152,8 +152,6 @@ pub struct World<L: Lanes> {
     continuous: Continuous<L::Elem>,
     /// Poses may have changed by other hands than a step's: no manifold may be reused.
     disturbed: bool,
-    /// Bodies have come or changed: some may have been put into others.
-    fresh: bool,
     /// The broad phase has a list the narrow phase has not taken yet.
     undealt: bool,
     /// Who sleeps; left alone without [`Settings::sleep`].
@@ -224,7 +222,6 @@ impl<L: Lanes> World<L> {
             motion: Motion::default(),
             continuous: Continuous::default(),
             disturbed: true,
-            fresh: true,
             undealt: true,
             islands: Islands::default(),
             regrouped: false,
@@ -389,9 +386,7 @@ impl<L: Lanes> World<L> {
         });
         if repaced || !seen.still {
             solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
-            if std::mem::take(&mut self.fresh) {
-                solving.note_depth(self.narrow.deepest(), task.traits.length);
-            }
+            solving.note_depth(self.narrow.deepest(), task.traits.length);
         }
         let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
@@ -468,7 +463,7 @@ impl<L: Lanes> World<L> {
         }
         self.inspected = Some(seen);
         self.watchdog.forget();
-        self.fresh = true;
+        self.solving.freshen();
         self.fields = self.forces.fields();
         if self.bodies.force.is_some() {
             self.fields.insert(0, Field::PerBody);

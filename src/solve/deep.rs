@@ -19,6 +19,21 @@ pub(super) const DEEP: f64 = 0.03;
 /// Steps for which deep points are moved apart after bodies have come.
 pub(super) const STEPS: u32 = 120;
 
+/// Whether anything is to be moved apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Apart {
+    /// Bodies have come or changed: some may have been put into others.
+    pub fresh: bool,
+    /// Steps for which deep points are moved apart.
+    pub steps: u32,
+}
+
+impl Default for Apart {
+    fn default() -> Self {
+        Self { fresh: true, steps: 0 }
+    }
+}
+
 /// The pass that moves deep points apart.
 #[derive(Debug)]
 pub(super) struct PartDeep<'a, L: Lanes> {

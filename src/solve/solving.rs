@@ -78,8 +78,7 @@ pub struct Solving<L: Lanes> {
     lively: bool,
     /// Something bounces in this step.
     bouncing: bool,
-    /// Steps for which deep points are moved apart; see [`deep`].
-    deep: u32,
+    deep: deep::Apart,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
@@ -108,7 +107,7 @@ impl<L: Lanes> Default for Solving<L> {
             latest: Latest::default(),
             lively: false,
             bouncing: false,
-            deep: 0,
+            deep: deep::Apart::default(),
             until_summed: 0,
         }
     }
@@ -191,11 +190,16 @@ impl<L: Lanes> Solving<L> {
         self.until_summed = 0;
     }
 
-    /// Notes how deep the deepest of the pairs last looked at is, metres, negative; those that were not are looked at as a
-    /// step ends. `length`: the scene's median radius.
+    /// Bodies have come or changed.
+    pub fn freshen(&mut self) {
+        self.deep.fresh = true;
+    }
+
+    /// After bodies have come: notes how deep the deepest of the pairs last looked at is, metres, negative; later ones are
+    /// looked at as a step ends. `length`: the scene's median radius.
     pub fn note_depth(&mut self, deepest: f64, length: f64) {
-        if deepest < -deep::DEEP * length {
-            self.deep = deep::STEPS;
+        if std::mem::take(&mut self.deep.fresh) && deepest < -deep::DEEP * length {
+            self.deep.steps = deep::STEPS;
         }
     }
 
@@ -319,7 +323,7 @@ impl<L: Lanes> Solving<L> {
                 let soft = Softness::new(h_secs, soft, soft::DAMPING, cap);
                 let deep = L::lit(-deep::DEEP * task.traits.length);
                 let [share, per_share] = [share, 1.0 / share].map(L::lit);
-                if self.deep > 0 {
+                if self.deep.steps > 0 {
                     stream.visit(&mut soft::Push::<L, true> { rows, moved, soft, deep, share, per_share });
                 } else {
                     stream.visit(&mut soft::Push::<L, false> { rows, moved, soft, deep, share, per_share });

@@ -1,7 +1,5 @@
 //! Chains, bridges and nets: how far they stretch, the shapes statics gives them, and what energy they gain.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 mod common_joints;
 mod common_motion;
 

@@ -54,7 +54,7 @@ fn bodies_faster_than_squares_can_be_end_in_an_error_or_not_but_in_no_panic() {
         [1e16, 1e20, 1e30, 3e38].into_iter().flat_map(|v| Broad::ALL.iter().map(move |b| (v, *b)))
     {
         let one = |k: usize| {
-            let shape = if k % 3 == 0 { ShapeSpec::Box([0.5, 0.1]) } else { ShapeSpec::Circle(0.2) };
+            let shape = if k.is_multiple_of(3) { ShapeSpec::Box([0.5, 0.1]) } else { ShapeSpec::Circle(0.2) };
             let way = [scatter(k, 1) * speed, scatter(k, 2) * speed];
             BodySpec::new(shape, [0.3 * k as f64, 0.0]).moving(way, 0.0)
         };

@@ -22,8 +22,8 @@ impl<L: Lanes> Solving<L> {
                 self.stream.end_where(false, manifolds, None);
             }
         }
-        if self.deep > 0 && task.solver == Solver::Soft {
-            self.deep = if self.part_deep(task, motion, settled) { self.deep - 1 } else { 0 };
+        if self.deep.steps > 0 && task.solver == Solver::Soft {
+            self.deep.steps = if self.part_deep(task, motion, settled) { self.deep.steps - 1 } else { 0 };
         }
         self.latest = if task.solver == Solver::Avbd {
             Latest::InPairs
