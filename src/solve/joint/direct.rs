@@ -2,11 +2,11 @@
 //!
 //! One visit a substep carries a weight's pull one joint further; a chain of 50 links that carries 50,000 times a link
 //! needs thousands, and without them impulses swing up until numbers end. Where the pins of some bodies make up a tree
-//! whose masses are too far apart for its length ([`HARD_RATIO`], [`HARD_LOAD`]), all its points are therefore solved at once after the pass over all joints, without
-//! softness: (J·M⁻¹·Jᵀ)·Δλ = −(J·v + bias), in `f64`. The matrix has a 2×2 block for each two pins that share a body;
-//! pins are eliminated from the leaves to the root, so that what is left of a pin's neighbours already has blocks, and
-//! no others come to be (Davis, Direct Methods for Sparse Linear Systems, 2006, §4.1: a perfect order). Work grows with
-//! the number of joints. Rows of angles are left to the pass before.
+//! whose masses are too far apart for its length ([`HARD_RATIO`], [`HARD_LOAD`]), all its points are therefore solved
+//! at once after the pass over all joints, without softness: (J·M⁻¹·Jᵀ)·Δλ = −(J·v + bias), in `f64`. The matrix has a
+//! 2×2 block for each two pins that share a body; pins are eliminated from the leaves to the root, so that what is left
+//! of a pin's neighbours already has blocks, and no others come to be (Davis, Direct Methods for Sparse Linear Systems,
+//! 2006, §4.1: a perfect order). Work grows with the number of joints. Rows of angles are left to the pass before.
 //!
 //! A light link under a heavy pull swings across it with ω² up to T/(m·L), faster than substeps can see, and directions
 //! are those of the substep's beginning: beyond ωh = 2 that blows up, however exactly impulses are solved. So a link
