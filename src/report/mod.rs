@@ -24,7 +24,7 @@ mod page;
 pub mod peers;
 mod plots;
 pub mod strip;
-mod table;
+pub(crate) mod table;
 mod timing;
 
 use std::path::Path;

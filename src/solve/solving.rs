@@ -195,10 +195,10 @@ impl<L: Lanes> Solving<L> {
         self.deep.fresh = true;
     }
 
-    /// After bodies have come: notes how deep the deepest of the pairs last looked at is, metres, negative; later ones are
-    /// looked at as a step ends. `length`: the scene's median radius.
-    pub fn note_depth(&mut self, deepest: f64, length: f64) {
-        if std::mem::take(&mut self.deep.fresh) && deepest < -deep::DEEP * length {
+    /// After bodies have come: notes how deep the deepest of the pairs last looked at is; later ones are looked at as a
+    /// step ends. `length`: the scene's median radius.
+    pub fn note_depth(&mut self, narrow: &Narrow<L::Elem>, length: f64) {
+        if std::mem::take(&mut self.deep.fresh) && narrow.deepest() < -deep::DEEP * length {
             self.deep.steps = deep::STEPS;
         }
     }

@@ -148,8 +148,6 @@ impl Record for Row {
 
     fn cells(&self) -> Vec<String> {
         let number = |value: f64| format!("{value:.1e}");
-        let found: Vec<String> =
-            self.found.iter().map(|found| found.map_or_else(|| "–".to_owned(), number)).collect();
         vec![
             self.case.clone(),
             self.solver.to_string(),
@@ -157,7 +155,7 @@ impl Record for Row {
             format!("{} {} {}", self.parameter, self.value, self.unit),
             if self.pass { "yes" } else { "no" }.to_owned(),
             self.threshold.clone(),
-            found.join(", "),
+            super::tables::found_cell(&self.found),
             super::tables::limit_cell(self),
             format!("{:.2}", self.metrics.pen * 1e3),
             number(self.metrics.jit),

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::run::Row;
 use super::table::CASES;
 use crate::report::Record;
+use crate::report::table::{or_dash, significant, yes_no};
 use crate::settings::Solver;
 
 /// What is shown side by side: solvers and substeps.
@@ -17,8 +18,26 @@ const SHOWN: [(Solver, u32); 7] = [
     (Solver::Xpbd, 8),
     (Solver::Avbd, 8),
 ];
+/// Their columns' heads.
+const HEADS: [&str; 7] = ["soft ×4", "soft ×8", "soft ×16", "impulse ×8", "pgs ×8", "xpbd ×8", "avbd ×8"];
 /// Of those, what misses are explained for.
 const DEFAULT: usize = 1;
+
+/// Heads of a table's columns: some, those of what is shown, some more.
+const fn headers<const N: usize>(before: &[&'static str], after: &[&'static str]) -> [&'static str; N] {
+    let mut all = [""; N];
+    let (mut at, mut k) = (0, 0);
+    let parts: [&[&'static str]; 3] = [before, &HEADS, after];
+    while k < parts.len() {
+        let mut j = 0;
+        while j < parts[k].len() {
+            all[at] = parts[k][j];
+            (at, j) = (at + 1, j + 1);
+        }
+        k += 1;
+    }
+    all
+}
 
 /// One number or word for each of what is shown; null where it was not run.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -83,33 +102,12 @@ impl Record for PassLine {
     const COMMAND: &'static str = "lamina stress --limit --out reports/stress";
     const NOTE: &'static str = "The table of stability: the default solver with 4, 8 and 16 substeps, the others with 8, 60 steps a \
                                 second, without sleep. `found` is what the default solver has with 8.";
-    const HEADER: &'static [&'static str] = &[
-        "case",
-        "soft ×4",
-        "soft ×8",
-        "soft ×16",
-        "impulse ×8",
-        "pgs ×8",
-        "xpbd ×8",
-        "avbd ×8",
-        "must hold",
-        "found",
-    ];
+    const HEADER: &'static [&'static str] = &headers::<10>(&["case"], &["must hold", "found"]);
 
     fn cells(&self) -> Vec<String> {
-        let found: Vec<String> = self
-            .found
-            .iter()
-            .map(|found| found.map_or_else(|| "–".to_owned(), |v| format!("{v:.1e}")))
-            .collect();
-        let passed = self.pass.cells(|pass| match pass {
-            Some(true) => "yes".to_owned(),
-            Some(false) => "no".to_owned(),
-            None => "–".to_owned(),
-        });
         let mut cells = vec![self.case.clone()];
-        cells.extend(passed);
-        cells.extend([self.threshold.clone(), found.join(", ")]);
+        cells.extend(self.pass.cells(|pass| or_dash(pass.map(yes_no))));
+        cells.extend([self.threshold.clone(), found_cell(&self.found)]);
         cells
     }
 }
@@ -131,44 +129,29 @@ impl Record for LimitLine {
     const NAME: &'static str = "stress_limits";
     const TITLE: &'static str = "Up to where it holds";
     const COMMAND: &'static str = PassLine::COMMAND;
-    const NOTE: &'static str = "The number each case is a function of, raised (or lowered) by twos until something breaks that must hold, then \
+    const NOTE: &'static str = "The number each case is a function of, made harsher by twos from what is asked until something breaks that must hold \
+                                (or milder, until all holds), then \
                                 halved to one part in twenty; in runs of the length of quick ones. ≥: the harshest that was tried holds.";
-    const HEADER: &'static [&'static str] = &[
-        "case",
-        "number",
-        "asked",
-        "soft ×4",
-        "soft ×8",
-        "soft ×16",
-        "impulse ×8",
-        "pgs ×8",
-        "xpbd ×8",
-        "avbd ×8",
-    ];
+    const HEADER: &'static [&'static str] = &headers::<10>(&["case", "number", "asked"], &[]);
 
     fn cells(&self) -> Vec<String> {
-        let mut cells = vec![self.case.clone(), self.parameter.clone(), short(self.value)];
+        let mut cells = vec![self.case.clone(), self.parameter.clone(), significant(self.value)];
         cells.extend(self.limit.cells(String::clone));
         cells
     }
 }
 
-/// Three significant digits.
-fn short(value: f64) -> String {
-    if (0.01..1e4).contains(&value.abs()) {
-        let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 4) as usize;
-        let text = format!("{value:.digits$}");
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-    } else {
-        format!("{value:.1e}")
-    }
+/// What was found, as a cell has it.
+pub(super) fn found_cell(found: &[Option<f64>]) -> String {
+    let found: Vec<_> = found.iter().map(|found| or_dash(found.map(significant))).collect();
+    found.join(", ")
 }
 
 /// The limit of a row, as a cell has it.
 pub(super) fn limit_cell(row: &Row) -> String {
     match (row.limit, row.limit_note.as_deref()) {
-        (Some(limit), Some("harshest")) => format!("≥ {}", short(limit)),
-        (Some(limit), _) => short(limit),
+        (Some(limit), Some("harshest")) => format!("≥ {}", significant(limit)),
+        (Some(limit), _) => significant(limit),
         (None, Some(_)) => "none".to_owned(),
         (None, None) => "–".to_owned(),
     }
@@ -234,11 +217,6 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
     let missed = rows.iter().filter(|row| row.solver == solver && row.substeps == substeps && !row.pass);
     all.extend(missed.map(|row| {
         let about = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.about);
-        let found: Vec<String> = row
-            .found
-            .iter()
-            .map(|found| found.map_or_else(|| "–".to_owned(), |v| format!("{v:.2e}")))
-            .collect();
         let broke = row.failed.as_ref().map_or_else(String::new, |failed| format!("; broke off: {failed}"));
         let why = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.missed);
         let why = if why.is_empty() { String::new() } else { format!(": {why}") };
@@ -246,7 +224,7 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
             "{} ({about}) does not hold with {solver} ×{substeps}: {} asked, {} found{broke}{why}.",
             row.case,
             row.threshold,
-            found.join(", ")
+            found_cell(&row.found)
         )
     }));
     all

@@ -1,89 +1,19 @@
-//! Islands fall asleep when they are at rest and not before, keep every bit while they sleep, wake when they are
-//! touched, and no lane width sees another night than the others.
+//! Islands fall asleep when they are at rest and not before, and keep every bit while they sleep; no lane width sees
+//! another night than the others.
 
 mod common_motion;
+mod common_sleep;
 
 use common_motion::scene_of;
-use lamina2d::body::{Bodies, BodyId};
-use lamina2d::contact::{Contact, Manifolds};
+use common_sleep::{
+    drowsy, id, max_speed, movable, named, on_floor, pose, put_to_sleep, step, unit_box, world_of,
+};
 use lamina2d::force::{Forces, Spring};
-use lamina2d::island::Islands;
-use lamina2d::joint::{Distance, JointKind, JointSpec};
-use lamina2d::lanes::{Lanes, Real, f32s, f64s};
-use lamina2d::scene::{BodyKind, BodySpec, Scene, ShapeSpec, by_name};
+use lamina2d::lanes::{Lanes, f32s, f64s};
+use lamina2d::scene::{BodyKind, BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::{Broad, Settings, Skips, Solver};
 use lamina2d::vec2::Rot;
 use lamina2d::world::World;
-
-const DT_SECS: f64 = 1.0 / 60.0;
-
-fn drowsy() -> Settings {
-    Settings { sleep: true, ..Settings::default() }
-}
-
-fn named(name: &str) -> Scene {
-    by_name(name, None, 1).expect("a named scene")
-}
-
-fn world_of<L: Lanes>(scene: &Scene, settings: Settings) -> World<L> {
-    World::from_scene(scene, settings).expect("the scene is good")
-}
-
-fn step<L: Lanes>(world: &mut World<L>, steps: usize) {
-    for _ in 0..steps {
-        world.step(DT_SECS).expect("stays finite");
-    }
-}
-
-fn movable<L: Lanes>(world: &World<L>) -> usize {
-    let bodies = world.bodies();
-    bodies.slots().filter(|&slot| bodies.kind(slot) == BodyKind::Dynamic).count()
-}
-
-/// Steps until all that can move sleeps.
-fn put_to_sleep<L: Lanes>(world: &mut World<L>, within: usize) {
-    for _ in 0..within {
-        if world.sleeping() == movable(world) {
-            return;
-        }
-        step(world, 1);
-    }
-    let (sleeping, all) = (world.sleeping(), movable(world));
-    panic!(
-        "{sleeping} of {all} asleep after {within} steps, {:e} m/s: {:?}",
-        max_speed(world),
-        world.settings()
-    );
-}
-
-fn id<L: Lanes>(world: &World<L>, slot: usize) -> BodyId {
-    world.bodies().id(slot).expect("lives")
-}
-
-/// The pose columns of a body, to the bit.
-fn pose<L: Lanes>(world: &World<L>, slot: usize) -> [u64; 4] {
-    let bodies = world.bodies();
-    [&bodies.x, &bodies.y, &bodies.c, &bodies.s].map(|column| column[slot].to_f64().to_bits())
-}
-
-fn max_speed<L: Lanes>(world: &World<L>) -> f64 {
-    let bodies = world.bodies();
-    let speed = |slot: usize| bodies.vx[slot].to_f64().hypot(bodies.vy[slot].to_f64());
-    bodies.slots().map(speed).fold(0.0, f64::max)
-}
-
-fn unit_box(x: f64, y: f64) -> BodySpec {
-    BodySpec::new(ShapeSpec::Box([0.5; 2]), [x, y]).surface(0.0, 0.6)
-}
-
-fn floor() -> BodySpec {
-    BodySpec::new(ShapeSpec::Box([30.0, 0.5]), [0.0, -0.5]).surface(0.0, 0.6).fixed()
-}
-
-/// A floor and on it these bodies, under gravity.
-fn on_floor(bodies: impl IntoIterator<Item = BodySpec>) -> Scene {
-    scene_of(std::iter::once(floor()).chain(bodies).collect(), Forces::gravity())
-}
 
 #[test]
 fn piles_fall_asleep_and_keep_every_bit() {
@@ -137,93 +67,6 @@ fn before_anything_sleeps_no_bit_differs() {
         step(&mut off, 1);
     }
     assert!(on.counts().contacts > 0 && on.sleeping() > 0, "the scene tests contacts up to a first sleeper");
-}
-
-#[test]
-fn a_box_dropped_on_a_sleeping_pyramid_wakes_it_when_it_lands() {
-    let mut world = world_of::<f32s::X8>(&named("pyramid/10"), drowsy());
-    put_to_sleep(&mut world, 600);
-    let boxes = world.sleeping();
-    // Not a ball: one that rolls off the pyramid rolls on for ever.
-    let dropped = BodySpec::new(ShapeSpec::Box([0.5, 0.5]), [0.3, 14.0]).mass(2.0);
-    let dropped = world.insert(&dropped).expect("a good body");
-    step(&mut world, 20);
-    assert_eq!(world.sleeping(), boxes, "the box still falls");
-    assert!(!world.is_asleep(dropped));
-    let mut landed = false;
-    for _ in 0..60 {
-        step(&mut world, 1);
-        landed |= world.sleeping() == 0;
-    }
-    assert!(landed, "the box woke nobody");
-    put_to_sleep(&mut world, 1200);
-}
-
-#[test]
-fn what_rested_on_a_removed_box_wakes_and_falls() {
-    let mut world = world_of::<f32s::X8>(&named("pyramids/2"), drowsy());
-    put_to_sleep(&mut world, 600);
-    // Slot 1 is the floor, 2 to 11 the first pyramid's lowest row.
-    let (top, other) = (12, 2 + 55);
-    let (before, far) = (world.bodies().y[top], pose(&world, other));
-    for slot in [2, 3] {
-        world.remove(id(&world, slot)).expect("lives");
-    }
-    assert_eq!(world.sleeping(), 55, "the other pyramid sleeps on");
-    step(&mut world, 40);
-    assert!(world.bodies().y[top] < before - 0.5, "what rested on it falls");
-    assert_eq!(pose(&world, other), far);
-    // The floor carries the other one: it is known to rest on it though all pairs are new.
-    world.remove(id(&world, 1)).expect("lives");
-    step(&mut world, 30);
-    assert_eq!(world.sleeping(), 0);
-    assert!(world.bodies().y[other] < 0.0, "without a floor all falls");
-}
-
-#[test]
-fn what_is_done_to_a_body_wakes_its_island_alone() {
-    let mut world = world_of::<f32s::X8>(&named("pyramids/2"), drowsy());
-    put_to_sleep(&mut world, 600);
-    assert_eq!(world.counts().islands, 2);
-    let (a, b) = (id(&world, 20), id(&world, 80));
-    world.apply_impulse(a, [0.0, 1e-4], 0.0).expect("dynamic");
-    assert_eq!((world.is_asleep(a), world.is_asleep(b), world.sleeping()), (false, true, 55));
-    step(&mut world, 1);
-    assert_eq!((world.counts().sleeping, world.counts().islands), (55, 1));
-    put_to_sleep(&mut world, 600);
-    world.set_force(b, [0.0; 2], 0.0).expect("lives");
-    assert!(world.is_asleep(b), "no force as before");
-    step(&mut world, 1);
-    assert!(world.is_asleep(b), "a change of none is none");
-    world.set_force(b, [0.1, 0.0], 0.0).expect("lives");
-    assert_eq!((world.is_asleep(a), world.is_asleep(b)), (true, false));
-    put_to_sleep(&mut world, 600);
-    world.wake(a).expect("lives");
-    assert_eq!((world.is_asleep(a), world.is_asleep(b)), (false, true));
-    put_to_sleep(&mut world, 600);
-    let _ = world.bodies_mut();
-    assert_eq!(world.sleeping(), 0, "whatever was done there wakes all");
-    put_to_sleep(&mut world, 600);
-    world.set_forces(Forces { gravity: Some([0.0, -5.0]), ..Forces::default() }).expect("good fields");
-    assert_eq!(world.sleeping(), 0, "other fields wake all");
-    step(&mut world, 1);
-    assert!(max_speed(&world) > 0.0, "the pyramids spring back a little under less weight");
-}
-
-#[test]
-fn a_stack_that_wakes_stands() {
-    let mut world = world_of::<f32s::X8>(&named("pyramid/10"), drowsy());
-    put_to_sleep(&mut world, 600);
-    world.apply_impulse(id(&world, 30), [1e-3, 0.0], 0.0).expect("dynamic");
-    assert_eq!(world.sleeping(), 0, "one island");
-    let mut fastest: f64 = 0.0;
-    for _ in 0..60 {
-        step(&mut world, 1);
-        fastest = fastest.max(max_speed(&world));
-    }
-    println!("fastest after waking: {fastest:e} m/s");
-    assert!(fastest < 1e-2, "{fastest}");
-    put_to_sleep(&mut world, 120);
 }
 
 #[test]
@@ -310,6 +153,22 @@ fn what_rests_on_nothing_sleeps_only_where_nothing_pulls() {
     assert!(!asleep(&body([0.0, 1e-4]), weak), "at its apex");
 }
 
+#[test]
+fn nothing_is_allocated_while_all_or_some_sleep() {
+    let mut world = world_of::<f32s::X8>(&named("pyramids/2"), drowsy());
+    put_to_sleep(&mut world, 600);
+    let asleep = allocation_counter::measure(|| step(&mut world, 60)).count_total;
+    world.apply_impulse(id(&world, 20), [0.0, 1e-4], 0.0).expect("dynamic");
+    step(&mut world, 2);
+    let half = allocation_counter::measure(|| step(&mut world, 20)).count_total;
+    assert_eq!(world.sleeping(), 55);
+    put_to_sleep(&mut world, 600);
+    world.wake(id(&world, 20)).expect("lives");
+    let again = allocation_counter::measure(|| step(&mut world, 60)).count_total;
+    assert_eq!(world.sleeping(), 110, "woke and fell asleep again meanwhile");
+    assert_eq!([asleep, half, again], [0; 3]);
+}
+
 /// Two pyramids fall asleep, a ball lands on the second, a box of the first is taken away: hashes on the way.
 fn night<L: Lanes>() -> Vec<u64> {
     night_with::<L>(drowsy())
@@ -384,146 +243,4 @@ fn sleep_is_safe_under_every_solver_and_the_same_at_every_width() {
         assert_eq!(shot_at::<f32s::X8>(solver).0, narrow, "{solver}");
         assert_eq!(shot_at::<f32s::X16>(solver).0, narrow, "{solver}");
     }
-}
-
-#[test]
-fn a_bullet_wakes_the_stack_it_hits_and_a_wall_keeps_it_from_the_next() {
-    let stack = |x: f64| (0..5).map(move |k| unit_box(x, 0.5 + f64::from(k)));
-    let wall = BodySpec::new(ShapeSpec::Box([0.05, 4.0]), [4.0, 4.0]).fixed();
-    let scene = on_floor(stack(0.0).chain(stack(6.0)).chain([wall]));
-    let mut world = world_of::<f32s::X8>(&scene, drowsy());
-    put_to_sleep(&mut world, 600);
-    // Two thirds of a box a step at the first stack; through the wall in a third of a step if nothing stopped it.
-    let shots = [([-8.0, 2.4], [40.0, 0.0]), ([3.0, 6.5], [200.0, 0.0])];
-    let [_, second] = shots.map(|(place, velocity)| {
-        let shot = BodySpec::new(ShapeSpec::Circle(0.2), place).mass(0.5).moving(velocity, 0.0);
-        world.insert(&shot).expect("a good body")
-    });
-    let mut woke = None;
-    for k in 0..60 {
-        step(&mut world, 1);
-        woke = woke.or((!world.is_asleep(id(&world, 4))).then_some(k));
-        assert!(world.bodies().x[second.slot()] < 4.0, "step {k}: through the wall");
-        assert!(world.is_asleep(id(&world, 9)), "step {k}: the stack behind the wall woke");
-    }
-    let woke = woke.expect("the stack was hit");
-    assert!((9..=13).contains(&woke), "7.3 m at 2/3 m a step, not {woke} steps");
-    let pushed = world.bodies().x[4];
-    assert!(pushed > 0.05, "the box that was hit is at {pushed} m");
-}
-
-#[test]
-fn contacts_push_as_before_when_they_wake() {
-    let settled = |scene, solver| {
-        let mut world = world_of::<f32s::X8>(&named(scene), Settings { solver, ..drowsy() });
-        put_to_sleep(&mut world, 1200);
-        world
-    };
-    let load = |contacts: &[Contact]| -> Vec<f64> {
-        contacts.iter().map(|contact| contact.points.iter().map(|point| point.impulse).sum()).collect()
-    };
-    let mut world = settled("pyramid/10", Solver::Soft);
-    let before = load(&world.contacts());
-    // Not a multiple of the steps for which a warm start is carried.
-    step(&mut world, 7);
-    world.wake(id(&world, 20)).expect("lives");
-    assert_eq!(load(&world.contacts()), before, "to wake is not to push");
-    for _ in 0..20 {
-        step(&mut world, 1);
-        let after = load(&world.contacts());
-        assert_eq!(after.len(), before.len());
-        let largest = before.iter().copied().fold(0.0, f64::max);
-        let most = before.iter().zip(&after).map(|(a, b)| (a - b).abs() / largest).fold(0.0, f64::max);
-        assert!(most < 0.02, "a contact's impulse is another by {most} of the largest");
-    }
-    // A solver that carries nothing stands, too.
-    let mut world = settled("stack/5", Solver::Xpbd);
-    let top = world.bodies().y[6];
-    world.wake(id(&world, 2)).expect("lives");
-    step(&mut world, 30);
-    let moved = world.bodies().y[6] - top;
-    assert!(moved.abs() < 1e-3, "the top moved by {moved} m");
-}
-
-#[test]
-fn links_make_one_island_and_wake_both_ends_when_they_go() {
-    let mut bodies = Bodies::<f32>::new();
-    for x in [0.0, 3.0, 6.0] {
-        bodies.insert(&unit_box(x, 0.0)).expect("a good body");
-    }
-    let (mut islands, none_touch) = (Islands::default(), Manifolds::default());
-    let rest = |islands: &mut Islands<f32>, bodies: &mut Bodies<f32>| {
-        let everywhere = 0..bodies.len();
-        let runs = std::slice::from_ref(&everywhere);
-        for _ in 0..31 {
-            islands.tire::<f32s::X8>(bodies, runs, DT_SECS, 0.0);
-        }
-        islands.settle(bodies, &none_touch, runs, false);
-        [1, 2, 3].map(|slot| islands.is_asleep(slot))
-    };
-    islands.look_over(&bodies, [[1, 2]]);
-    bodies.vx[2] = 1.0;
-    assert_eq!(rest(&mut islands, &mut bodies), [false, false, true], "its other end moves");
-    bodies.vx[2] = 0.0;
-    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
-    assert_eq!(islands.len(), 2);
-    islands.wake(2);
-    assert_eq!([1, 2, 3].map(|slot| islands.is_asleep(slot)), [false, false, true]);
-    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
-    islands.look_over(&bodies, [[1, 2], [2, 3]]);
-    assert_eq!(islands.sleeping(), 0, "a link between two islands wakes both");
-    assert_eq!(rest(&mut islands, &mut bodies), [true; 3]);
-    assert_eq!(islands.len(), 1);
-    islands.look_over(&bodies, [[2, 3]]);
-    assert_eq!(islands.sleeping(), 0, "a link that goes wakes its ends");
-}
-
-/// Two boxes on a rod, 3 m apart on the floor, and two others without: a push on one wakes what hangs on it.
-#[test]
-fn what_joints_hold_together_sleeps_and_wakes_together() {
-    let mut scene =
-        on_floor([unit_box(-6.0, 0.5), unit_box(-3.0, 0.5), unit_box(3.0, 0.5), unit_box(6.0, 0.5)]);
-    scene.joints = vec![JointSpec::new(1, 2, JointKind::Distance(Distance::default()))];
-    let night = |world: &mut World<f32s::X8>| {
-        put_to_sleep(world, 300);
-        assert_eq!(world.islands().len(), 3, "the rod makes one island of two");
-        let poses: Vec<_> = (2..=5).map(|slot| pose(world, slot)).collect();
-        step(world, 60);
-        assert_eq!(poses, (2..=5).map(|slot| pose(world, slot)).collect::<Vec<_>>());
-        // 4 m/s for a box of 1 kg, to the left, which the rod passes on.
-        world.apply_impulse(id(world, 2), [-4.0, 0.0], 0.0).unwrap();
-        step(world, 1);
-        let awake: Vec<_> = (2..=5).map(|slot| !world.is_asleep(id(world, slot))).collect();
-        assert_eq!(awake, [true, true, false, false]);
-        assert!(world.bodies().vx[3] < -0.1, "the rod pulls");
-        put_to_sleep(world, 600);
-        let (a, b) = (world.bodies().x[2], world.bodies().x[3]);
-        assert!((b - a - 3.0).abs() < 1e-3, "{} m apart", b - a);
-        world.hash()
-    };
-    let mut world = world_of::<f32s::X8>(&scene, drowsy());
-    night(&mut world);
-    // Without the rod each sleeps for itself again; taking it out wakes both ends.
-    let joint = world.joints().ids().next().unwrap();
-    world.remove_joint(joint).unwrap();
-    step(&mut world, 1);
-    assert!(!world.is_asleep(id(&world, 2)) && !world.is_asleep(id(&world, 3)));
-    put_to_sleep(&mut world, 300);
-    assert_eq!(world.islands().len(), 4);
-}
-
-#[test]
-fn nothing_is_allocated_while_all_or_some_sleep() {
-    let mut world = world_of::<f32s::X8>(&named("pyramids/2"), drowsy());
-    put_to_sleep(&mut world, 600);
-    let asleep = allocation_counter::measure(|| step(&mut world, 60)).count_total;
-    world.apply_impulse(id(&world, 20), [0.0, 1e-4], 0.0).expect("dynamic");
-    step(&mut world, 2);
-    let half = allocation_counter::measure(|| step(&mut world, 20)).count_total;
-    assert_eq!(world.sleeping(), 55);
-    put_to_sleep(&mut world, 600);
-    world.wake(id(&world, 20)).expect("lives");
-    let again = allocation_counter::measure(|| step(&mut world, 60)).count_total;
-    assert_eq!(world.sleeping(), 110, "woke and fell asleep again meanwhile");
-    assert_eq!([asleep, half, again], [0; 3]);
 }

@@ -7,6 +7,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use crate::report::table::significant;
+
 const SIZE: (u32, u32) = (760, 460);
 /// Distinct for the common kinds of colour blindness (Okabe and Ito, 2008).
 pub(crate) const PALETTE: [RGBColor; 6] = [
@@ -88,8 +90,8 @@ pub(crate) fn log_log(
                 .x_desc(x_label)
                 .y_desc(y_label)
                 .x_labels(6)
-                .x_label_formatter(&|v| short(*v))
-                .y_label_formatter(&|v| short(*v))
+                .x_label_formatter(&|v| significant(*v))
+                .y_label_formatter(&|v| significant(*v))
                 .light_line_style(WHITE)
                 .draw(),
         )?;
@@ -177,13 +179,6 @@ pub(super) fn bars(
     })
 }
 
-/// Three significant digits without trailing zeros.
-fn short(value: f64) -> String {
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 8) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
 /// For each label one bar, its series on top of each other.
 pub(super) fn stacked(
     title: &str,
@@ -249,7 +244,7 @@ pub(super) fn heat_map(
                 let color = if share > 0.5 { ON_DARK } else { BLACK };
                 let style = ("sans-serif", 15).into_font().color(&color);
                 let middle = style.pos(Pos::new(HPos::Center, VPos::Center));
-                plot(chart.draw_series(std::iter::once(Text::new(short(value), (x, y), middle))))?;
+                plot(chart.draw_series(std::iter::once(Text::new(significant(value), (x, y), middle))))?;
             }
         }
         Ok(())
