@@ -111,11 +111,12 @@ impl<L: Lanes> Stiffness<L> {
     }
 
     /// What turning with `spin` moves the end of an arm by beyond ω×r, m/s on average over a substep:
-    /// −(1 − cos φ)·r/h, with tan(φ/2) taken for φ/2, so that the fastest spin cannot make it large.
+    /// −(1 − cos φ)·r/h, with tan(φ/2) taken for φ/2. Nothing over a radian: such a spin is not the one that the push
+    /// will leave, and light bodies on long levers were thrown by what it said.
     #[inline(always)]
     fn bend(&self, arm: Vec2<L>, spin: L) -> Vec2<L> {
         let half = L::lit(0.5) * (self.h * spin);
-        let square = half * half;
+        let square = L::select(half.abs().le(L::lit(0.5)), half * half, L::zero());
         -(arm * (((square + square) / (L::one() + square)) * self.per_sec))
     }
 }

@@ -214,6 +214,28 @@ fn a_weld_keeps_a_cantilever_angle() {
     assert!((soft / statics - 1.0).abs() < 1e-3, "{soft} rad, {statics} by statics");
 }
 
+/// Two welds between the same two bodies, one of them on a lever of 24 radii, say the same thing twice.
+#[test]
+fn welds_side_by_side_are_one_weld() {
+    let mut light = disc([0.0; 2]).mass(0.06).moving([0.0; 2], -7.0);
+    light.shape = ShapeSpec::Circle(0.1);
+    let welds = [JointKind::weld([0.0; 2]), JointKind::weld([-2.4, 0.0])];
+    let scene = |welds: &[JointKind]| {
+        let joints = welds.iter().map(|weld| JointSpec::new(0, 1, weld.clone())).collect();
+        with_joints(vec![light.clone(), disc([0.0; 2]).mass(1.0)], joints, Forces::default())
+    };
+    for &solver in Solver::ALL {
+        let [one, two] = [&welds[..1], &welds].map(|welds| {
+            let mut world = start(&scene(welds), Settings { solver, ..in_f64() });
+            advance(&mut *world, 60);
+            (world.states()[1].angular_velocity, gaps(&*world)[0])
+        });
+        println!("{solver}: {one:?} rad/s and m, twice {two:?}");
+        // The point's softness against the rigid row had the second weld's gap grow by 60 each substep.
+        assert!((one.0 - two.0).abs() < 1e-3 * one.0.abs() && two.1 < 1e-3, "{solver}: {one:?} {two:?}");
+    }
+}
+
 #[test]
 fn two_free_bodies_keep_their_momentum() {
     let springy = Some(JointSpring { hertz: 3.0, damping: 0.1 });

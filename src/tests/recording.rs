@@ -45,15 +45,16 @@ fn frames(recording: &mut Recording) -> Vec<FrameData> {
 #[test]
 fn what_is_read_is_what_was() -> Outcome {
     let (_folder, path) = folder();
-    for (name, precision, sleep) in [
-        ("all/150", Precision::F32, false),
-        ("polygons/150", Precision::F64, false),
-        ("stack/4", Precision::F32, true),
-        ("joint_grid/5", Precision::F32, false),
-        ("tumbler/30", Precision::F32, false),
+    for (name, precision, sleep, positions) in [
+        ("all/150", Precision::F32, false, None),
+        ("polygons/150", Precision::F64, false, None),
+        ("stack/4", Precision::F32, true, None),
+        ("joint_grid/5", Precision::F32, false, None),
+        ("tumbler/30", Precision::F32, false, None),
+        ("all/150", Precision::F32, false, Some(Precision::F64)),
     ] {
         let scene = scene::by_name(name, None, 3)?;
-        let settings = Settings { sleep, ..Settings::default().with_precision(precision) };
+        let settings = Settings { sleep, positions, ..Settings::default().with_precision(precision) };
         let mut seen = Vec::new();
         record(&path, &scene, settings, (120, 1), |world| {
             seen.push((world.hash(), world.states(), world.contacts(), world.invariants()));

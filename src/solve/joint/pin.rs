@@ -11,8 +11,12 @@
 //! ```
 //!
 //! and what is left is one row of inverse mass k for the angle, on which bounds may be put: exact in one visit, as a
-//! 3×3 solution is, also where only part of it is held. Both formulas on the right are sums of positive numbers:
-//! nothing cancels however long the arms. (det by its entries lost all digits of f32 at arms of 1000 radii.)
+//! 3×3 solution is, also where only part of it is held. In the push the point is soft: K becomes K/s, s < 1 its share
+//! (`mass_scale`), and what is eliminated with it k₀ − s·cᵀK⁻¹c; with the rigid point's k in its place two welds side by
+//! side grew by 60 a substep, as a point that leaked its force asked the row for a thousand times what it had leaked.
+//!
+//! Both formulas on the right are sums of positive numbers: nothing cancels however long the arms. (det by its entries
+//! lost all digits of f32 at arms of 1000 radii.)
 
 use super::row::{Numbers, Row};
 use super::{Linkage, Pose, Stiffness, Swing, anchors, lanes, number, turn};
@@ -239,8 +243,11 @@ impl<L: Lanes> Linkage<L> for Pin<L> {
         // does not bend a weld.
         let alone = (held - stop) * how.mass_scale;
         let turning = (b.spin - a.spin) + response.coupling.dot(alone - held);
-        let angular = self.row.push(how, self.angle, turning, L::zero(), response.angular);
-        let next = alone - response.solve(response.coupling) * angular;
+        // Against what the row does, the soft point holds by its share: see the module's head.
+        let free = self.inv_inertia[0] + self.inv_inertia[1];
+        let angular_k = free + how.mass_scale * (response.angular - free);
+        let angular = self.row.push(how, self.angle, turning, L::zero(), [angular_k, response.angular]);
+        let next = alone - response.solve(response.coupling) * (how.mass_scale * angular);
         self.impulse = next * how.per_share;
         self.apply(a, b, next - held, angular);
     }

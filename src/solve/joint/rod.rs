@@ -133,7 +133,7 @@ impl<L: Lanes> Linkage<L> for Rod<L> {
         let beyond = (q * q) * inverse(p + (p * p + q * q).sqrt());
         let bend = arms.dot(self.axis) + beyond * how.per_sec;
         let k = self.response(a, b, levers);
-        let impulse = self.row.push(how, self.length, self.speed(a, b, levers), bend, k);
+        let impulse = self.row.push(how, self.length, self.speed(a, b, levers), bend, [k; 2]);
         self.apply(a, b, levers, impulse);
     }
 

@@ -39,6 +39,9 @@ impl Numbers {
     pub(super) fn of(joint: &Joint, h_secs: f64, share: f64) -> Self {
         let free = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, ..Self::default() };
         let spring = |spring: JointSpring| {
+            // What swings by more than a radian in a substep is not followed, only brought to rest: θ = 1.
+            let followed = std::f64::consts::TAU * spring.hertz * h_secs < 1.0;
+            let share = if followed { share } else { 1.0 };
             let (rate, gain) = soft::coefficients(share * h_secs, spring.hertz, spring.damping);
             Self { gain, rate, bound: f64::INFINITY, ..free }
         };
@@ -111,15 +114,18 @@ impl<L: Lanes> Row<L> {
     }
 
     /// Solves with bias; returns the change of the impulse in units of u. `x` the coordinate, `w` its moving velocity
-    /// as far as it is linear, `bend` what the substep adds to it by turning, `k` the inverse effective mass.
+    /// as far as it is linear, `bend` what the substep adds to it by turning; `k` the inverse effective mass that
+    /// impulses meet, `rigid` that of what a spring's stiffness is said for.
     #[inline(always)]
-    pub(super) fn push(&mut self, how: &Stiffness<L>, x: L, w: L, bend: L, k: L) -> L {
+    pub(super) fn push(&mut self, how: &Stiffness<L>, x: L, w: L, bend: L, [k, rigid]: [L; 2]) -> L {
         let (zero, mass) = (L::zero(), inverse(k));
+        // A spring's gain g is k_r/(k_r + γ); with another k it is the same spring where it is 1/(k + γ).
+        let sprung = inverse(rigid + self.gain * (k - rigid));
         let (drive, limit) = (self.drive * how.share, self.limit * how.share);
         let w0 = (w + bend) - k * (drive + limit);
         let target = self.speed - self.rate * (x - self.rest);
         let bound = self.bound * how.share;
-        let next_drive = (-bound).max(bound.min(self.gain * (mass * (target - w0))));
+        let next_drive = (-bound).max(bound.min(self.gain * (sprung * (target - w0))));
         let w1 = w0 + k * next_drive;
         let equal = self.upper.le(self.lower);
         let (above, below) = (x - self.lower, x - self.upper);
