@@ -14,12 +14,13 @@
 //! | `solvers` | each solver, from the state in which `soft` settled |
 //! | `jointed` | a net, a chain, a bridge |
 //! | `skips` | each skip on and off; `exact` all that change no bit, on and off |
+//! | `checks` | the watchdog on and off, positions in f64 and in f32 |
 //! | `broad_on_off` | polygons with the broad phase of `auto` and with all pairs in the narrow phase |
 
 mod skips;
 
 use lamina2d::scene::mixes::Mix;
-use lamina2d::settings::{Broad, Integrator, Settings, Skips, Solver};
+use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skips, Solver};
 use lamina2d::simulation::Simulation;
 
 use crate::common::{Answer, DT_SECS, SETTLE_STEPS, Settled};
@@ -113,6 +114,7 @@ pub(crate) fn all() -> Vec<Case> {
     cases.extend(solvers());
     cases.extend(jointed());
     cases.extend(skips::cases());
+    cases.extend(checks());
     cases.extend(broad_on_off());
     cases
 }
@@ -186,6 +188,22 @@ fn jointed() -> Vec<Case> {
         Case { touch: Touch::Never, ..Case::new(&format!("jointed/{scene}"), scene, bodies, 60) }
     };
     vec![case("joint_grid/12", 142), case("joint_grid/32", 1022), case("chain/30", 30), case("bridge/40", 40)]
+}
+
+fn checks() -> Vec<Case> {
+    let watched = Settings { max_speed: Some(1e3), max_gain: Some(1e6), ..Settings::default() };
+    let finer = Settings { positions: Some(Precision::F64), ..Settings::default() };
+    let case = |name: &str, settings: Settings| {
+        Case::new(&format!("checks/{name}"), "polygons/150", 150, SETTLE_STEPS).with(settings)
+    };
+    let watchdog = [("on", watched), ("off", Settings::default())].map(|(state, settings)| Case {
+        // It looks and changes nothing.
+        alike: "checks/watchdog".to_owned(),
+        ..case(&format!("watchdog/polygons/150/{state}"), settings)
+    });
+    let positions = [("f64", finer), ("f32", Settings::default())]
+        .map(|(kind, settings)| case(&format!("positions/polygons/150/{kind}"), settings));
+    watchdog.into_iter().chain(positions).collect()
 }
 
 fn broad_on_off() -> Vec<Case> {
