@@ -293,7 +293,8 @@ pub struct Settings {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
     /// What centroids are kept in: `f64` with a scalar of `f32` keeps what their columns leave out; see
-    /// [`crate::body::Bodies::fine`]. `None`: the scalar.
+    /// [`crate::body::Bodies::fine`], for 1.8 % more instructions of a settled step (bench `checks/positions`). `None`: the
+    /// scalar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub positions: Option<Precision>,
     /// A step that ends with a dynamic body faster than this, m/s, is refused; see [`crate::world`].
