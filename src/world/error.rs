@@ -21,7 +21,7 @@ pub enum StepError {
         /// Where it first was so: the integrator or the solver.
         stage: Stage,
     },
-    /// A body is faster than [`Settings::max_speed`]; the world holds that state.
+    /// A body is faster than [`Settings::max_speed`](crate::settings::Settings::max_speed); the world holds that state.
     #[error(
         "step {step}: body in slot {slot} runs away: {speed} m/s is over max-speed = {bound} m/s after {stage}"
     )]
@@ -37,7 +37,7 @@ pub enum StepError {
         /// What made it so fast: the integrator or the solver.
         stage: Stage,
     },
-    /// There is more energy over the beginning than [`Settings::max_gain`]; the world holds that state.
+    /// There is more energy over the beginning than [`Settings::max_gain`](crate::settings::Settings::max_gain); the world holds that state.
     #[error(
         "step {step}: energy has grown by {gain} J, over max-gain = {bound} J; its {term} part grew most in slot {slot}, \
          after {stage}"
