@@ -214,8 +214,19 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
     }
     let mut all = vec![format!("Items of the table of stability that hold: {}.", passed.join(", "))];
     let (solver, substeps) = SHOWN[DEFAULT];
-    let missed = rows.iter().filter(|row| row.solver == solver && row.substeps == substeps && !row.pass);
-    all.extend(missed.map(|row| {
+    let ours = || rows.iter().filter(|row| row.solver == solver && row.substeps == substeps);
+    let directly: Vec<String> = ours()
+        .filter(|row| row.direct_joints > 0)
+        .map(|row| format!("{} joints of {}", row.direct_joints, row.case))
+        .collect();
+    if !directly.is_empty() {
+        all.push(format!(
+            "A direct solve takes over in {solver} where joints make up trees whose masses are 64 apart, or their ratio \
+             times the number of joints squared is 4096: {}.",
+            directly.join(", ")
+        ));
+    }
+    all.extend(ours().filter(|row| !row.pass).map(|row| {
         let about = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.about);
         let broke = row.failed.as_ref().map_or_else(String::new, |failed| format!("; broke off: {failed}"));
         let why = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.missed);
