@@ -227,6 +227,9 @@ pub enum SettingsError {
     /// Only one solver knows what its contacts sag by.
     #[error("max-sag needs the solver soft, got {0}")]
     MaxSagSolver(Solver),
+    /// A bound on the sag is kept by numbers of substeps that differ.
+    #[error("fixed-substeps and max-sag exclude each other")]
+    FixedSag,
     /// A share of the substep rate.
     #[error("stiffness must be over 0 and at most 0.5, got {0:?}")]
     Stiffness(f64),
@@ -288,6 +291,10 @@ pub struct Settings {
     /// `substeps` is then what bodies have that touch nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_sag: Option<f64>,
+    /// All islands have `substeps`, slender stacks too, which `soft` else gives as many as keep them from buckling; see
+    /// [`crate::solve::tower`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub fixed_substeps: bool,
     /// Stiffness of soft contacts, hz·h: their frequency as a share of the substep rate, over 0 up to
     /// [`MOST_STIFF`]; `None` for [`crate::solve::soft::HERTZ_TIMES_SUBSTEP`], the stiffest that stays calm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -322,6 +329,7 @@ impl Default for Settings {
             continuous: true,
             sleep: false,
             max_sag: None,
+            fixed_substeps: false,
             stiffness: None,
             positions: None,
             max_speed: None,
@@ -381,6 +389,9 @@ impl Settings {
             }
             if self.solver != Solver::Soft {
                 return Err(SettingsError::MaxSagSolver(self.solver));
+            }
+            if self.fixed_substeps {
+                return Err(SettingsError::FixedSag);
             }
         }
         if (self.precision, self.positions) == (Precision::F64, Some(Precision::F32)) {

@@ -287,9 +287,8 @@ impl<L: Lanes> World<L> {
         clock: &mut Instant,
     ) -> (integrate::Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        let repaced = self.settings.max_sag.is_some_and(|max_sag| {
-            let Task { dt_secs, stiffness, .. } = *task;
-            let goal = Goal { max_sag, base: task.plan.substeps, dt_secs, stiffness };
+        let goal = Goal::of(task, &self.settings, self.forces.attraction.is_some());
+        let repaced = goal.is_some_and(|goal| {
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {

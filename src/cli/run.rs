@@ -63,6 +63,9 @@ pub(crate) struct Args {
     /// Give each island as many substeps as keep its contacts from sagging by more than this, metres.
     #[arg(long, allow_hyphen_values = true)]
     max_sag: Option<f64>,
+    /// Give no island more substeps than others, though a slender stack may buckle with them.
+    #[arg(long)]
+    fixed_substeps: bool,
     /// Stiffness of soft contacts: their frequency as a share of the substep rate, over 0 up to 0.5 [default: 0.18].
     #[arg(long, allow_hyphen_values = true)]
     stiffness: Option<f64>,
@@ -155,6 +158,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         continuous: asked.continuous && !args.no_continuous,
         sleep: args.sleep || asked.sleep,
         max_sag: args.max_sag.or(asked.max_sag),
+        fixed_substeps: args.fixed_substeps || asked.fixed_substeps,
         stiffness: args.stiffness.or(asked.stiffness),
         positions: args.positions.or(asked.positions),
         max_speed: args.max_speed.or(asked.max_speed),

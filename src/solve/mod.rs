@@ -46,6 +46,7 @@ mod rows;
 pub mod soft;
 mod solving;
 pub mod stream;
+pub mod tower;
 mod xpbd;
 
 use crate::integrate::Plan;

@@ -1,5 +1,9 @@
 //! Substeps per island: hard piles get more, quiet ones fewer.
 //!
+//! Unless substeps are fixed, an island in which a slender stack would buckle gets those that [`tower`](super::tower)
+//! asks for: always on, as it costs a look every [`TOWER_STEPS`] steps until there is one. A bound on the sag is asked
+//! for by the settings.
+//!
 //! A contact that carries N sags by s ≈ N/(m_eff·ω²), ω = 2π·hz with hz·h the stiffness: of n substeps in a
 //! step of dt, by (N/m_eff)·dt²/(n²·(2π·hz·h)²). With a bound on the sag each island has the n its hardest contact asks for.
 //!
@@ -17,40 +21,68 @@
 
 use std::ops::Range;
 
+use super::Task;
 use super::constraint::Constraint;
 use super::stream::{Ends, Visit};
+use super::tower::{Carrying, Towers};
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
 use crate::island::root;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
+use crate::settings::{Settings, Solver};
 
 /// Numbers of substeps an island may have.
 pub const RUNGS: [u32; 11] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 /// Steps from one look at the loads to the next.
 pub const LOOK_STEPS: u32 = 8;
+/// The same where all islands have the number of the settings, and are only looked over for slender stacks.
+pub const TOWER_STEPS: u32 = 32;
 /// What a lower rung must have to spare.
 const SPARE: f64 = 1.25;
+/// The same where only slender stacks ask: their need is a bound, and hardly wavers once they stand.
+const TOWER_SPARE: f64 = 1.05;
 
 /// What islands are paced by.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// The most a contact may sag, metres.
-    pub max_sag: f64,
+    /// The most a contact may sag, metres; without, no island has fewer than `base`.
+    pub max_sag: Option<f64>,
     /// Substeps of bodies that touch nothing.
     pub base: u32,
     /// Seconds per step.
     pub dt_secs: f64,
+    /// Seconds of the step the contacts' impulses are of.
+    pub last_dt_secs: f64,
     /// Of contacts, hz·h.
     pub stiffness: f64,
+    /// What an impulse changes displacements by, over what it changes velocities by.
+    pub share: f64,
 }
 
 impl Goal {
+    /// What islands of a step are paced by; `None` where all have one number. `coupled`: bodies act on each other from
+    /// afar, and so must be in step.
+    pub fn of<R: Real>(task: &Task<'_, R>, settings: &Settings, coupled: bool) -> Option<Self> {
+        let Task { dt_secs, stiffness, plan, .. } = *task;
+        let max_sag = settings.max_sag;
+        let paced = max_sag.is_some() || (task.solver == Solver::Soft && !settings.fixed_substeps && !coupled);
+        let (base, share) = (plan.substeps, plan.impulse_share());
+        paced.then_some(Self { max_sag, base, dt_secs, last_dt_secs: dt_secs, stiffness, share })
+    }
+
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.
     fn needed(&self, load: f64) -> f64 {
         let omega_h = 2.0 * std::f64::consts::PI * self.stiffness;
-        (load * self.dt_secs / (omega_h * omega_h * self.max_sag)).sqrt()
+        self.max_sag.map_or(0.0, |max_sag| (load * self.dt_secs / (omega_h * omega_h * max_sag)).sqrt())
+    }
+
+    /// How much of what keeps a contact from leaning `moment`, N·m per radian, takes up with one substep; `turn`:
+    /// effective mass times length squared, kg·m². Nothing where it has none.
+    pub(super) fn leaning(&self, moment: f64, turn: f64) -> f64 {
+        let per_step = 2.0 * std::f64::consts::PI * self.stiffness / self.dt_secs;
+        if turn > 0.0 { moment * self.share / (turn * per_step * per_step) } else { 0.0 }
     }
 }
 
@@ -76,8 +108,11 @@ pub struct Paces<R: Real> {
     before: Vec<u32>,
     /// Which of `substeps` a slot has.
     index: Column<R>,
-    /// N/m_eff·dt per slot, of this look and the last, m/s.
-    load: [Vec<f64>; 2],
+    /// N/m_eff·dt per slot, of this look, m/s.
+    load: Vec<f64>,
+    /// Substeps it takes per slot, of this look and the last.
+    needs: [Vec<f64>; 2],
+    towers: Towers,
     parent: Vec<u32>,
     /// Per root.
     islands: Vec<Island>,
@@ -89,8 +124,8 @@ pub struct Paces<R: Real> {
 /// What an island is known to be.
 #[derive(Clone, Copy, Debug, Default)]
 struct Island {
-    /// N/m_eff·dt of its hardest contact, m/s: what both of the last looks saw, and what one of them did.
-    load: [f64; 2],
+    /// Substeps it takes: by what both of the last looks saw, and by what one of them did.
+    needs: [f64; 2],
     /// The most a part of it has had.
     substeps: u32,
     /// Something touches or is joined.
@@ -107,7 +142,9 @@ impl<R: Real> Default for Paces<R> {
             of_slot: Vec::new(),
             before: Vec::new(),
             index: Column::new(R::ZERO),
-            load: Default::default(),
+            load: Vec::new(),
+            needs: Default::default(),
+            towers: Towers::default(),
             parent: Vec::new(),
             islands: Vec::new(),
             joined: None,
@@ -151,17 +188,50 @@ impl<R: Real> Paces<R> {
         self.joined
     }
 
+    /// Do islands have numbers of their own?
+    fn is_paced(&self) -> bool {
+        !self.of_slot.is_empty()
+    }
+
     /// Is it time to read the loads?
-    pub fn looks(&self) -> bool {
-        self.steps.is_multiple_of(LOOK_STEPS)
+    pub fn looks(&self, goal: &Goal) -> bool {
+        let every = if self.is_paced() || goal.max_sag.is_some() { LOOK_STEPS } else { TOWER_STEPS };
+        self.steps > 0 && self.steps.is_multiple_of(every)
+    }
+
+    /// Are islands to be told apart in this step? If not, the step has been counted.
+    pub fn wants(&mut self, goal: &Goal) -> bool {
+        let [now, last] = &self.needs;
+        let asked = || now.iter().zip(last).any(|(now, last)| now.min(*last) > f64::from(goal.base));
+        let wanted = self.is_paced() || goal.max_sag.is_some() || (self.looks(goal) && asked());
+        if !wanted {
+            self.steps = self.steps.wrapping_add(1);
+        }
+        wanted
     }
 
     /// A visitor that reads the loads.
     pub fn reading(&mut self) -> Loads<'_> {
-        self.load.swap(0, 1);
-        self.load[0].clear();
-        self.load[0].resize(self.of_slot.len(), 0.0);
-        Loads { load: &mut self.load[0], substeps: &self.of_slot }
+        self.load.clear();
+        self.load.resize(self.of_slot.len(), 0.0);
+        Loads { load: &mut self.load, substeps: &self.of_slot }
+    }
+
+    /// A visitor that notes what carries something.
+    pub(super) fn carrying(&mut self) -> Carrying<'_> {
+        self.towers.reading()
+    }
+
+    /// What slots need, by what has been read and noted. `joints`: the slots they join.
+    pub fn weigh(&mut self, goal: &Goal, bodies: &Bodies<R>, joints: impl Iterator<Item = [u32; 2]>) {
+        self.needs.swap(0, 1);
+        let [needs, _] = &mut self.needs;
+        needs.clear();
+        needs.extend(self.load.iter().map(|&load| goal.needed(load)));
+        needs.resize(bodies.len(), 0.0);
+        let of_slot = &self.of_slot;
+        let substeps = |slot: usize| of_slot.get(slot).copied().unwrap_or(goal.base);
+        self.towers.raise(goal, bodies, substeps, joints, needs);
     }
 
     /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join.
@@ -173,14 +243,13 @@ impl<R: Real> Paces<R> {
         joints: impl Iterator<Item = [u32; 2]>,
         runs: &[Range<usize>],
     ) -> bool {
-        // Before the first step nothing is known of loads.
-        let looked = self.looks() && self.steps > 0;
+        let looked = self.looks(goal);
         self.steps = self.steps.wrapping_add(1);
         let fresh = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        for load in &mut self.load {
-            load.resize(bodies.len(), 0.0);
+        for needs in &mut self.needs {
+            needs.resize(bodies.len(), 0.0);
         }
         self.join(bodies, manifolds, joints, runs);
         let joined = self.common_of_joined(goal, looked);
@@ -197,8 +266,16 @@ impl<R: Real> Paces<R> {
         let changed = fresh || self.of_slot != self.before;
         if changed {
             self.sort(goal, bodies, runs);
+        } else if goal.max_sag.is_none() && self.of_slot.iter().all(|&substeps| substeps == goal.base) {
+            self.give_up();
         }
         changed
+    }
+
+    /// All have the number of the settings again, and have had it in the last step.
+    fn give_up(&mut self) {
+        (self.substeps, self.joined) = (vec![0], None);
+        self.of_slot.clear();
     }
 
     /// The number all islands with joints have.
@@ -240,8 +317,8 @@ impl<R: Real> Paces<R> {
             let own = self.islands[slot];
             let at = root(&mut self.parent, slot as u32) as usize;
             let island = &mut self.islands[at];
-            let [now, last] = self.load.each_ref().map(|load| load[slot]);
-            island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
+            let [now, last] = self.needs.each_ref().map(|needs| needs[slot]);
+            island.needs = [island.needs[0].max(now.min(last)), island.needs[1].max(now.max(last))];
             island.substeps = island.substeps.max(self.of_slot[slot]);
             island.touches |= own.touches;
             island.joined |= own.joined;
@@ -303,11 +380,12 @@ impl<R: Real> Paces<R> {
 
 /// What an island should have after a look.
 fn aimed(goal: &Goal, island: &Island) -> u32 {
-    let [both, either] = island.load.map(|load| goal.needed(load));
-    let lower = below(island.substeps);
+    let [both, either] = island.needs;
+    let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
+    let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {
         above(island.substeps)
-    } else if either * SPARE <= f64::from(lower) {
+    } else if either * spare <= f64::from(lower) {
         lower
     } else {
         island.substeps

@@ -123,11 +123,20 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
-        if self.paces.looks() {
-            self.stream.visit(&mut self.paces.reading());
+        let last_dt_secs = f64::from(goal.base) * self.last_h_secs;
+        let goal = &Goal { last_dt_secs: if last_dt_secs > 0.0 { last_dt_secs } else { goal.dt_secs }, ..*goal };
+        let ends = || joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
+        if self.paces.looks(goal) {
+            if goal.max_sag.is_some() {
+                self.stream.visit(&mut self.paces.reading());
+            }
+            self.stream.visit(&mut self.paces.carrying());
+            self.paces.weigh(goal, bodies, ends());
         }
-        let ends = joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
-        let changed = self.paces.decide(goal, bodies, manifolds, ends, &motion.runs);
+        if !self.paces.wants(goal) {
+            return false;
+        }
+        let changed = self.paces.decide(goal, bodies, manifolds, ends(), &motion.runs);
         if changed {
             self.hand_back(manifolds, motion);
             self.paces.scale_impulses(bodies, manifolds);

@@ -150,3 +150,38 @@ fn a_kinematic_body_moves_as_far_as_it_should() {
     assert!((rider.velocity[0] + 0.25).abs() < 1e-6, "{}", rider.velocity[0]);
     assert!(world.penetration().max < 5e-4, "{}", world.penetration().max);
 }
+
+/// How far the top of a column has come down or gone aside, m, and the substeps of the last step.
+fn swayed(name: &str, settings: Settings, steps: usize) -> (f64, [u32; 2]) {
+    let scene = by_name(name, None, 1).expect("a named scene");
+    let mut world = start(&scene, settings);
+    let top = |world: &dyn Simulation| world.states().last().expect("boxes").position;
+    let begun = top(&*world);
+    advance(&mut *world, steps);
+    let [x, y] = top(&*world);
+    ((x - begun[0]).hypot(y - begun[1]), world.counts().substeps)
+}
+
+/// Slender stacks get the substeps that keep them from buckling, unasked; with those of the settings they lean and fall.
+#[test]
+fn a_slender_stack_gets_the_substeps_it_stands_with() {
+    for (name, substeps, most) in [("columns/40", 4, 16), ("t02_columns", 8, 32)] {
+        let settings = Settings { substeps, ..Settings::default() };
+        let (swayed_m, used) = swayed(name, settings, 1800);
+        println!("{name}: {swayed_m:.3} m with {used:?} substeps");
+        assert!(swayed_m < 0.15, "{name}: {swayed_m} m");
+        assert!(used[1] > substeps && used[1] <= most, "{name}: {used:?}");
+        let (fallen_m, used) = swayed(name, Settings { fixed_substeps: true, ..settings }, 1800);
+        println!("{name}: {fallen_m:.3} m with {used:?} substeps");
+        assert!(fallen_m > 1.0 && used == [substeps; 2], "{name}: {fallen_m} m, {used:?}");
+    }
+}
+
+/// What carries each other in rings, or stands low, needs no more than it is given.
+#[test]
+fn what_is_not_slender_keeps_its_substeps() {
+    for name in ["pyramid/20", "stack/20", "polygons/150", "bridge/20", "tumbler/100", "heavy/100"] {
+        let (_, used) = swayed(name, Settings::default(), 400);
+        assert_eq!(used, [4; 2], "{name}");
+    }
+}
