@@ -287,7 +287,7 @@ impl<L: Lanes> World<L> {
         clock: &mut Instant,
     ) -> (integrate::Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        let goal = Goal::of(task, &self.settings, self.forces.attraction.is_some());
+        let goal = Goal::of(task, &self.settings, &self.forces);
         let repaced = goal.is_some_and(|goal| {
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
@@ -370,7 +370,7 @@ impl<L: Lanes> World<L> {
         }
         self.inspected = Some(seen);
         self.watchdog.forget();
-        self.solving.freshen();
+        self.solving.freshen(!removed);
         self.fields = self.forces.fields();
         if self.bodies.force.is_some() {
             self.fields.insert(0, Field::PerBody);

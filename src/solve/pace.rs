@@ -24,21 +24,25 @@ use std::ops::Range;
 use super::Task;
 use super::constraint::Constraint;
 use super::stream::{Ends, Visit};
-use super::tower::{Carrying, Towers};
+use super::tower::{Touching, Towers};
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
+use crate::force::Forces;
 use crate::island::root;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 use crate::settings::{Settings, Solver};
 
 /// Numbers of substeps an island may have.
-pub const RUNGS: [u32; 11] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
+pub const RUNGS: [u32; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
 /// Steps from one look at the loads to the next.
 pub const LOOK_STEPS: u32 = 8;
 /// The same where all islands have the number of the settings, and are only looked over for slender stacks.
 pub const TOWER_STEPS: u32 = 32;
+/// A stack that needs over so many times the substeps its island has had is let fall: what has sagged so far would leap
+/// up as its contacts stiffen (200 boxes with 8, 23 m).
+const HOPELESS: f64 = 4.0;
 /// What a lower rung must have to spare.
 const SPARE: f64 = 1.25;
 /// The same where only slender stacks ask: their need is a bound, and hardly wavers once they stand.
@@ -53,23 +57,27 @@ pub struct Goal {
     pub base: u32,
     /// Seconds per step.
     pub dt_secs: f64,
-    /// Seconds of the step the contacts' impulses are of.
-    pub last_dt_secs: f64,
     /// Of contacts, hz·h.
     pub stiffness: f64,
     /// What an impulse changes displacements by, over what it changes velocities by.
     pub share: f64,
+    /// Uniform gravity, m/s².
+    pub gravity: [f64; 2],
+    /// Gaps up to this touch, metres.
+    pub touch: f64,
 }
 
 impl Goal {
-    /// What islands of a step are paced by; `None` where all have one number. `coupled`: bodies act on each other from
-    /// afar, and so must be in step.
-    pub fn of<R: Real>(task: &Task<'_, R>, settings: &Settings, coupled: bool) -> Option<Self> {
+    /// What islands of a step are paced by; `None` where all have one number. Bodies that attract each
+    /// other must be in step.
+    pub fn of<R: Real>(task: &Task<'_, R>, settings: &Settings, forces: &Forces) -> Option<Self> {
         let Task { dt_secs, stiffness, plan, .. } = *task;
-        let max_sag = settings.max_sag;
-        let paced = max_sag.is_some() || (task.solver == Solver::Soft && !settings.fixed_substeps && !coupled);
-        let (base, share) = (plan.substeps, plan.impulse_share());
-        paced.then_some(Self { max_sag, base, dt_secs, last_dt_secs: dt_secs, stiffness, share })
+        let (max_sag, base, share) = (settings.max_sag, plan.substeps, plan.impulse_share());
+        let looks_for_towers =
+            task.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
+        let (gravity, touch) = (forces.gravity.unwrap_or_default(), task.traits.touch());
+        let paced = max_sag.is_some() || looks_for_towers;
+        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, gravity, touch })
     }
 
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.
@@ -110,9 +118,13 @@ pub struct Paces<R: Real> {
     index: Column<R>,
     /// N/m_eff·dt per slot, of this look, m/s.
     load: Vec<f64>,
-    /// Substeps it takes per slot, of this look and the last.
+    /// Substeps it takes per slot to bear the load, of this look and the last.
     needs: [Vec<f64>; 2],
+    /// The same to keep stacks from buckling.
+    tower_needs: Vec<f64>,
     towers: Towers,
+    /// Bodies have come since the last look: what they stand on has hardly sagged yet.
+    fresh: bool,
     parent: Vec<u32>,
     /// Per root.
     islands: Vec<Island>,
@@ -124,8 +136,10 @@ pub struct Paces<R: Real> {
 /// What an island is known to be.
 #[derive(Clone, Copy, Debug, Default)]
 struct Island {
-    /// Substeps it takes: by what both of the last looks saw, and by what one of them did.
+    /// Substeps its loads take: by what both of the last looks saw, and by what one of them did.
     needs: [f64; 2],
+    /// Substeps its most slender stack takes.
+    tower: f64,
     /// The most a part of it has had.
     substeps: u32,
     /// Something touches or is joined.
@@ -144,7 +158,9 @@ impl<R: Real> Default for Paces<R> {
             index: Column::new(R::ZERO),
             load: Vec::new(),
             needs: Default::default(),
+            tower_needs: Vec::new(),
             towers: Towers::default(),
+            fresh: true,
             parent: Vec::new(),
             islands: Vec::new(),
             joined: None,
@@ -195,16 +211,22 @@ impl<R: Real> Paces<R> {
 
     /// Is it time to read the loads?
     pub fn looks(&self, goal: &Goal) -> bool {
-        let every = if self.is_paced() || goal.max_sag.is_some() { LOOK_STEPS } else { TOWER_STEPS };
-        self.steps > 0 && self.steps.is_multiple_of(every)
+        let often = self.is_paced() || goal.max_sag.is_some() || self.fresh;
+        let every = if often { LOOK_STEPS } else { TOWER_STEPS };
+        self.steps == 1 || (self.steps > 0 && self.steps.is_multiple_of(every))
+    }
+
+    /// Bodies have come.
+    pub fn freshen(&mut self) {
+        self.fresh = true;
     }
 
     /// Are islands to be told apart in this step? If not, the step has been counted.
     pub fn wants(&mut self, goal: &Goal) -> bool {
-        let [now, last] = &self.needs;
-        let asked = || now.iter().zip(last).any(|(now, last)| now.min(*last) > f64::from(goal.base));
+        let asked = || self.tower_needs.iter().any(|&needs| needs > f64::from(goal.base));
         let wanted = self.is_paced() || goal.max_sag.is_some() || (self.looks(goal) && asked());
         if !wanted {
+            self.fresh &= !self.looks(goal);
             self.steps = self.steps.wrapping_add(1);
         }
         wanted
@@ -217,9 +239,9 @@ impl<R: Real> Paces<R> {
         Loads { load: &mut self.load, substeps: &self.of_slot }
     }
 
-    /// A visitor that notes what carries something.
-    pub(super) fn carrying(&mut self) -> Carrying<'_> {
-        self.towers.reading()
+    /// A visitor that notes what touches.
+    pub(super) fn touching<L: Lanes>(&mut self, goal: &Goal) -> Touching<'_, L> {
+        self.towers.reading(goal.touch)
     }
 
     /// What slots need, by what has been read and noted. `joints`: the slots they join.
@@ -229,9 +251,7 @@ impl<R: Real> Paces<R> {
         needs.clear();
         needs.extend(self.load.iter().map(|&load| goal.needed(load)));
         needs.resize(bodies.len(), 0.0);
-        let of_slot = &self.of_slot;
-        let substeps = |slot: usize| of_slot.get(slot).copied().unwrap_or(goal.base);
-        self.towers.raise(goal, bodies, substeps, joints, needs);
+        self.towers.look(goal, bodies, joints, &mut self.tower_needs);
     }
 
     /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join.
@@ -245,10 +265,10 @@ impl<R: Real> Paces<R> {
     ) -> bool {
         let looked = self.looks(goal);
         self.steps = self.steps.wrapping_add(1);
-        let fresh = self.of_slot.len() != bodies.len();
+        let resized = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        for needs in &mut self.needs {
+        for needs in self.needs.iter_mut().chain([&mut self.tower_needs]) {
             needs.resize(bodies.len(), 0.0);
         }
         self.join(bodies, manifolds, joints, runs);
@@ -259,11 +279,12 @@ impl<R: Real> Paces<R> {
             self.of_slot[slot] = match self.islands[at] {
                 Island { joined: true, .. } => joined,
                 Island { touches: false, .. } => goal.base,
-                island if looked => aimed(goal, &island),
+                island if looked => aimed(goal, &island, self.fresh),
                 island => island.substeps,
             };
         }
-        let changed = fresh || self.of_slot != self.before;
+        self.fresh &= !looked;
+        let changed = resized || self.of_slot != self.before;
         if changed {
             self.sort(goal, bodies, runs);
         } else if goal.max_sag.is_none() && self.of_slot.iter().all(|&substeps| substeps == goal.base) {
@@ -280,7 +301,7 @@ impl<R: Real> Paces<R> {
 
     /// The number all islands with joints have.
     fn common_of_joined(&self, goal: &Goal, looked: bool) -> u32 {
-        let of = |island: &Island| if looked { aimed(goal, island) } else { island.substeps };
+        let of = |island: &Island| if looked { aimed(goal, island, self.fresh) } else { island.substeps };
         let joined = self.islands.iter().filter(|island| island.joined);
         joined.map(of).max().unwrap_or(goal.base).max(goal.base)
     }
@@ -319,6 +340,7 @@ impl<R: Real> Paces<R> {
             let island = &mut self.islands[at];
             let [now, last] = self.needs.each_ref().map(|needs| needs[slot]);
             island.needs = [island.needs[0].max(now.min(last)), island.needs[1].max(now.max(last))];
+            island.tower = island.tower.max(self.tower_needs[slot]);
             island.substeps = island.substeps.max(self.of_slot[slot]);
             island.touches |= own.touches;
             island.joined |= own.joined;
@@ -378,9 +400,14 @@ impl<R: Real> Paces<R> {
     }
 }
 
-/// What an island should have after a look.
-fn aimed(goal: &Goal, island: &Island) -> u32 {
-    let [both, either] = island.needs;
+/// What an island should have after a look; `fresh`: before it has sagged.
+fn aimed(goal: &Goal, island: &Island, fresh: bool) -> u32 {
+    let hopeless = !fresh && island.tower > HOPELESS * f64::from(island.substeps);
+    let tower = if hopeless { 0.0 } else { island.tower };
+    if fresh && tower > f64::from(island.substeps) {
+        return RUNGS.into_iter().find(|&n| f64::from(n) >= tower).unwrap_or(RUNGS[RUNGS.len() - 1]);
+    }
+    let [both, either] = island.needs.map(|needs| needs.max(tower));
     let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
     let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {

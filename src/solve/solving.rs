@@ -123,14 +123,12 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
-        let last_dt_secs = f64::from(goal.base) * self.last_h_secs;
-        let goal = &Goal { last_dt_secs: if last_dt_secs > 0.0 { last_dt_secs } else { goal.dt_secs }, ..*goal };
         let ends = || joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
         if self.paces.looks(goal) {
             if goal.max_sag.is_some() {
                 self.stream.visit(&mut self.paces.reading());
             }
-            self.stream.visit(&mut self.paces.carrying());
+            self.stream.visit(&mut self.paces.touching(goal));
             self.paces.weigh(goal, bodies, ends());
         }
         if !self.paces.wants(goal) {
@@ -199,9 +197,12 @@ impl<L: Lanes> Solving<L> {
         self.until_summed = 0;
     }
 
-    /// Bodies have come or changed.
-    pub fn freshen(&mut self) {
+    /// Bodies have come, or changed.
+    pub fn freshen(&mut self, came: bool) {
         self.deep.fresh = true;
+        if came {
+            self.paces.freshen();
+        }
     }
 
     /// After bodies have come: notes how deep the deepest of the pairs last looked at is; later ones are looked at as a

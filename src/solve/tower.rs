@@ -1,17 +1,18 @@
 //! Slender stacks: what stands on one contact alone, and how many substeps it takes to stand.
 //!
 //! Soft contacts yield, so a stack leans and its weight bends it further. A contact of two points w apart, each with
-//! stiffness k, answers a turn θ with the moment c·θ, c = k₀k₁/(k₀ + k₁)·w². What it alone carries presses on it with N
-//! and has its centre of mass h above it: per radian that is the moment N·h. The stack buckles where Σ N·h/c over
+//! stiffness k, answers a turn θ with the moment c·θ, c = k₀k₁/(k₀ + k₁)·w². What it alone carries weighs N along the
+//! normal and has its centre of mass h above it: per radian that is the moment N·h. The stack buckles where Σ N·h/c over
 //! its contacts passes 1 (Dunkerley's bound, on the safe side: of n equal boxes n³ may be 6·c/(m·g·ℓ), where the
 //! column of n joints bears 7.84). k grows with the square of the substeps, so a stack asks for √Σ of them, Σ for one.
 //!
 //! Measured with boxes of 1 m, 60 steps a second: by the bound 80 need 29 substeps. With 8 they lean by 3.5 times as
 //! much every two seconds and fall after 16, with 16 twice as much and after 34, with 32 they stand; f64 alike.
 //!
-//! Which contacts carry something alone is found by peeling: a body with one loaded contact is given to the body below
-//! it, with all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What
-//! stands on a single point adds nothing: no stiffness keeps it from rolling.
+//! Which contacts carry something alone is found by peeling: a body with one contact is given to the body below it, with
+//! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What stands on a
+//! single point adds nothing: no stiffness keeps it from rolling. Weights are those of uniform gravity, not the
+//! impulses that contacts hold: they are right from the first step on, and an impact asks for nothing.
 
 use super::constraint::Constraint;
 use super::pace::Goal;
@@ -23,13 +24,11 @@ use crate::scene::BodyKind;
 /// A body with joints has at least so many contacts: more than can be peeled off it.
 const JOINED: u32 = 1 << 30;
 
-/// A contact that carries something.
+/// A contact that may carry something.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     slots: [u32; 2],
-    /// Of all its points, N·s per substep.
-    impulse: f64,
-    /// m₀m₁/(m₀ + m₁)·w² with the points' effective masses, kg·m²; 0 unless two points carry something.
+    /// m₀m₁/(m₀ + m₁)·w² with the points' effective masses, kg·m²; 0 unless there are two points.
     turn: f64,
     /// From A's centroid to the points, along the normal, metres.
     ahead: f64,
@@ -62,23 +61,22 @@ pub struct Towers {
 }
 
 impl Towers {
-    /// A visitor that notes contacts that carry something.
-    pub(super) fn reading(&mut self) -> Carrying<'_> {
+    /// A visitor that notes contacts whose gap is at most `touch`, metres, or that carry something.
+    pub(super) fn reading<L: Lanes>(&mut self, touch: f64) -> Touching<'_, L> {
         self.edges.clear();
-        Carrying { edges: &mut self.edges }
+        Touching { edges: &mut self.edges, touch: L::lit(touch) }
     }
 
-    /// Raises `needs`, substeps per slot, to what the stack needs that stands on each body's way down.
-    ///
-    /// `substeps`: what the noted impulses belong to, by slot. `joined`: slots of joints.
-    pub(super) fn raise<R: Real>(
+    /// Substeps that the stack needs that stands on each body's way down, per slot. `joined`: slots of joints.
+    pub(super) fn look<R: Real>(
         &mut self,
         goal: &Goal,
         bodies: &Bodies<R>,
-        substeps: impl Fn(usize) -> u32,
         joined: impl Iterator<Item = [u32; 2]>,
-        needs: &mut [f64],
+        needs: &mut Vec<f64>,
     ) {
+        needs.clear();
+        needs.resize(bodies.len(), 0.0);
         self.weigh(bodies, joined);
         let movable = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let one_left = |slot: &usize| self.parts[*slot].contacts == 1 && movable(*slot);
@@ -94,10 +92,8 @@ impl Towers {
             }
             let edge = self.edges[part.which as usize];
             let below = edge.slots[usize::from(edge.slots[0] == slot)] as usize;
-            let above = Edge::height(&edge, slot, &part, bodies);
-            let per_sec = f64::from(substeps(slot as usize)) / goal.last_dt_secs;
-            let sum = part.sum + goal.leaning(edge.impulse * per_sec * above.max(0.0), edge.turn);
-            needs[slot as usize] = needs[slot as usize].max(sum.sqrt());
+            let sum = part.sum + goal.leaning(edge.moment(slot, &part, bodies, goal.gravity), edge.turn);
+            needs[slot as usize] = sum.sqrt();
             self.parts[slot as usize].contacts = 0;
             if !movable(below) {
                 continue;
@@ -114,7 +110,7 @@ impl Towers {
         }
     }
 
-    /// Each body alone, and how many contacts it has that carry something.
+    /// Each body alone, and how many contacts it has.
     fn weigh<R: Real>(&mut self, bodies: &Bodies<R>, joined: impl Iterator<Item = [u32; 2]>) {
         self.parts.clear();
         self.parts.resize(bodies.len(), Part::default());
@@ -142,44 +138,44 @@ impl Towers {
 }
 
 impl Edge {
-    /// How far the centre of mass of what `slot` carries is from the contact, away from the other body, metres.
-    fn height<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>) -> f64 {
+    /// N·h of what `slot` carries, N·m per radian; not less than 0.
+    fn moment<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>, gravity: [f64; 2]) -> f64 {
         let a = self.slots[0] as usize;
         let from_a = |k: usize, at: R| part.moment[k] / part.mass - at.to_f64();
-        let [x, y] = [from_a(0, bodies.x[a]), from_a(1, bodies.y[a])];
-        let ahead = x * self.normal[0] + y * self.normal[1] - self.ahead;
-        if self.slots[0] == slot { -ahead } else { ahead }
+        let along = |v: [f64; 2]| v[0] * self.normal[0] + v[1] * self.normal[1];
+        let ahead = along([from_a(0, bodies.x[a]), from_a(1, bodies.y[a])]) - self.ahead;
+        // Away from what carries it.
+        let away = if self.slots[0] == slot { -1.0 } else { 1.0 };
+        let weight = -away * part.mass * along(gravity);
+        weight.max(0.0) * (away * ahead).max(0.0)
     }
 }
 
-/// Notes contacts that carry something.
+/// Notes contacts that touch.
 #[derive(Debug)]
-pub(super) struct Carrying<'a> {
+pub(super) struct Touching<'a, L> {
     edges: &'a mut Vec<Edge>,
+    touch: L,
 }
 
-impl<L: Lanes> Visit<L> for Carrying<'_> {
+impl<L: Lanes> Visit<L> for Touching<'_, L> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        let impulses = c.points.map(|point| point.impulse().to_array());
-        let masses = c.points.map(|point| point.mass.to_array());
+        let zero = L::zero();
+        let touches = c.points.map(|point| {
+            let near = zero.lt(point.held) | point.separation.le(self.touch);
+            L::select(near & zero.lt(point.mass), point.mass, zero).to_array()
+        });
         let levers = c.points.map(|point| point.levers[0].to_array());
         let [nx, ny, ahead] = [c.normal.x, c.normal.y, c.tangent_levers[0]].map(L::to_array);
         for lane in 0..L::WIDTH {
-            let [first, last] = [0, POINTS - 1];
-            let impulse: f64 = impulses.iter().map(|of| of[lane].to_f64()).sum();
-            if impulse <= 0.0 {
-                continue;
+            let [m, n] = [touches[0][lane].to_f64(), touches[POINTS - 1][lane].to_f64()];
+            if m + n > 0.0 {
+                let apart = (levers[0][lane] - levers[POINTS - 1][lane]).to_f64();
+                let turn = m * n / (m + n) * apart * apart;
+                let normal = [nx[lane], ny[lane]].map(L::Elem::to_f64);
+                let slots = [ends.a[lane], ends.b[lane]];
+                self.edges.push(Edge { slots, turn, ahead: ahead[lane].to_f64(), normal });
             }
-            let both = POINTS == 2 && impulses.iter().all(|of| of[lane].to_f64() > 0.0);
-            let turn = if both {
-                let [m, n] = [first, last].map(|k| masses[k][lane].to_f64());
-                m * n / (m + n) * (levers[first][lane] - levers[last][lane]).to_f64().powi(2)
-            } else {
-                0.0
-            };
-            let normal = [nx[lane], ny[lane]].map(L::Elem::to_f64);
-            let slots = [ends.a[lane], ends.b[lane]];
-            self.edges.push(Edge { slots, impulse, turn, ahead: ahead[lane].to_f64(), normal });
         }
     }
 }
