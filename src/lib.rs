@@ -83,7 +83,7 @@
 //! | narrow and broad phase in lanes | kept; manifolds are coded as numbers, so that a batch is written without a branch per lane |
 //! | colours kept between steps | kept for a steady order, not for time: colouring anew where contacts change costs as much (pyramid/100 prepare 0.73 and 0.76 ms against 0.63 and 0.80, polygons/10000 falling 1.47 and 1.55 against 1.25 and 1.65) and needs 1 to 3 colours fewer; the cut into batches is what it costs, all of them where one contact comes or goes |
 //! | cache blocking | lost: polygons/10000 in the order of their rows and shuffled at random solve alike (1.63, 1.69 ms against 1.13, 1.66): the rows of 10,000 bodies are 160 kB, any order of them stays in L2 while constraints stream by |
-//! | substeps per island | kept as a setting: columns/40 stands with 16 where it falls with 4 for all |
+//! | substeps per island | kept: a slender stack gets those it stands with unasked (columns/40 12, where it falls with 4 for all), every island its own by a bound on the sag |
 //! | 16 lanes | same bits; slower than 8 without AVX-512 in the target |
 //! | lazy work | free flight, closed forms, absent friction and bounces: see the report's table of skips |
 //!

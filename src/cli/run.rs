@@ -242,6 +242,7 @@ fn describe(
             ] {
                 map.extend(asked.map(|asked| (name.to_owned(), json!(asked))));
             }
+            map.extend(settings.fixed_substeps.then(|| ("fixed_substeps".to_owned(), json!(true))));
             map.extend(settings.positions.map(|asked| ("positions".to_owned(), json!(asked))));
             Ok(map)
         }

@@ -1,6 +1,6 @@
 //! Scene files: TOML in, a [`Scene`] and settings out; unknown keys are refused.
 //!
-//! Metres, kilograms, seconds, radians, y up:
+//! Metres, kilograms, seconds, radians, y up. Keys of `[settings]`: those of [`Settings`], as it is written down, and `steps`:
 //! ```
 //! let text = r#"
 //! about = "a box and a triangle on a slope, with some wind"

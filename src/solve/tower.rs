@@ -10,8 +10,8 @@
 //! much every two seconds and fall after 16, with 16 twice as much and after 34, with 32 they stand; f64 alike.
 //!
 //! Which contacts carry something alone is found by peeling: a body with one contact is given to the body below it, with
-//! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What stands on a
-//! single point adds nothing: no stiffness keeps it from rolling. Weights are those of uniform gravity, not the
+//! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What has its centre
+//! of mass not above its contact's points adds nothing, as on a single point: no stiffness keeps it from tipping. Weights are those of uniform gravity, not the
 //! impulses that contacts hold: they are right from the first step on, and an impact asks for nothing.
 
 use super::constraint::Constraint;
@@ -32,6 +32,8 @@ struct Edge {
     turn: f64,
     /// From A's centroid to the points, along the normal, metres.
     ahead: f64,
+    /// From A's centroid to either point, along the tangent, metres.
+    aside: [f64; 2],
     /// From A to B.
     normal: [f64; 2],
 }
@@ -138,16 +140,22 @@ impl Towers {
 }
 
 impl Edge {
-    /// N·h of what `slot` carries, N·m per radian; not less than 0.
+    /// N·h of what `slot` carries, N·m per radian; 0 where that does not stand on the points.
     fn moment<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>, gravity: [f64; 2]) -> f64 {
         let a = self.slots[0] as usize;
         let from_a = |k: usize, at: R| part.moment[k] / part.mass - at.to_f64();
-        let along = |v: [f64; 2]| v[0] * self.normal[0] + v[1] * self.normal[1];
-        let ahead = along([from_a(0, bodies.x[a]), from_a(1, bodies.y[a])]) - self.ahead;
+        let center = [from_a(0, bodies.x[a]), from_a(1, bodies.y[a])];
+        let ([nx, ny], [tx, ty]) = (self.normal, [-self.normal[1], self.normal[0]]);
+        let along = |v: [f64; 2]| v[0] * nx + v[1] * ny;
+        let across = |v: [f64; 2]| v[0] * tx + v[1] * ty;
+        let (ahead, pull) = (along(center) - self.ahead, along(gravity));
+        // Where the plumb line through the centre of mass meets the line of the points.
+        let plumb = across(center) - across(gravity) / pull * ahead;
+        let [first, last] = self.aside;
+        let stands = first.min(last) < plumb && plumb < first.max(last);
         // Away from what carries it.
         let away = if self.slots[0] == slot { -1.0 } else { 1.0 };
-        let weight = -away * part.mass * along(gravity);
-        weight.max(0.0) * (away * ahead).max(0.0)
+        if stands && away * ahead > 0.0 { (-away * part.mass * pull).max(0.0) * (away * ahead) } else { 0.0 }
     }
 }
 
@@ -170,11 +178,12 @@ impl<L: Lanes> Visit<L> for Touching<'_, L> {
         for lane in 0..L::WIDTH {
             let [m, n] = [touches[0][lane].to_f64(), touches[POINTS - 1][lane].to_f64()];
             if m + n > 0.0 {
-                let apart = (levers[0][lane] - levers[POINTS - 1][lane]).to_f64();
-                let turn = m * n / (m + n) * apart * apart;
+                // The lever r×n is −r·t.
+                let aside = [0, POINTS - 1].map(|k| -levers[k][lane].to_f64());
+                let turn = m * n / (m + n) * (aside[0] - aside[1]).powi(2);
                 let normal = [nx[lane], ny[lane]].map(L::Elem::to_f64);
                 let slots = [ends.a[lane], ends.b[lane]];
-                self.edges.push(Edge { slots, turn, ahead: ahead[lane].to_f64(), normal });
+                self.edges.push(Edge { slots, turn, ahead: ahead[lane].to_f64(), aside, normal });
             }
         }
     }

@@ -93,21 +93,22 @@ pub(super) const STRAIGHT: Own = Own {
     },
 };
 
-/// T28: how many of what is hardly a shape are neither refused nor stay finite.
+/// T28: how many of what is hardly a shape are neither refused nor stay finite; those that are thin, thinner by a share.
 pub(super) const REFUSED: Own = Own {
     what: "neither refused nor finite",
     most: 0.0,
     of: |trial, seen| {
         let floor = seen.scene.bodies[0].clone();
+        let share = trial.value;
         let polygon = |outline: &[[f64; 2]]| BodySpec::new(ShapeSpec::Polygon(outline.to_vec()), [0.0, 2.0]);
         let doubtful = [
-            polygon(&[[-1.0, 0.0], [1.0, 0.0], [0.0, 1e-5]]),
-            polygon(&[[-1.0, 0.0], [1.0, 0.0], [1.0, 1e-3], [-1.0, 2e-3]]),
+            polygon(&[[-1.0, 0.0], [1.0, 0.0], [0.0, 1e-5 * share]]),
+            polygon(&[[-1.0, 0.0], [1.0, 0.0], [1.0, 1e-3 * share], [-1.0, 2e-3 * share]]),
             polygon(&[[-1.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
             polygon(&[[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0]]),
-            BodySpec::new(ShapeSpec::Box([1.0, 1e-6]), [0.0, 2.0]),
+            BodySpec::new(ShapeSpec::Box([1.0, 1e-6 * share]), [0.0, 2.0]),
             BodySpec::new(ShapeSpec::Box([0.0, 1.0]), [0.0, 2.0]),
-            BodySpec::new(ShapeSpec::Circle(1e-9), [0.0, 2.0]),
+            BodySpec::new(ShapeSpec::Circle(1e-9 * share), [0.0, 2.0]),
             BodySpec::new(ShapeSpec::Circle(0.5), [0.0, 2.0]).mass(0.0),
             BodySpec::new(ShapeSpec::Circle(0.5), [0.0, 2.0]).mass(f64::NAN),
         ];

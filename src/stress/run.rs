@@ -44,6 +44,8 @@ pub struct Row {
     pub limit_note: Option<String>,
     /// Joints that were solved directly: where masses differ too much for visits.
     pub direct_joints: usize,
+    /// The most substeps an island had as the run ended: more than `substeps` where a slender stack asked for them.
+    pub most_substeps: u32,
     /// Why the run broke off.
     pub failed: Option<String>,
 }
@@ -98,6 +100,7 @@ pub fn run(case: &Case, value: f64, settings: Settings, secs: f64) -> anyhow::Re
         limit: None,
         limit_note: None,
         direct_joints: seen.direct_joints,
+        most_substeps: seen.most_substeps,
         failed: seen.failed,
     })
 }

@@ -64,6 +64,8 @@ pub struct Seen {
     pub sums: [crate::measure::Invariants; 2],
     /// Joints that were solved directly in the last step.
     pub direct_joints: usize,
+    /// The most substeps an island had in the last step.
+    pub most_substeps: u32,
     /// Why it broke off.
     pub failed: Option<String>,
     kinds: Vec<BodyKind>,
@@ -105,6 +107,7 @@ impl Watch {
             stretch: 0.0,
             sums: [sums; 2],
             direct_joints: 0,
+            most_substeps: 0,
             failed: None,
             kinds: scene.bodies.iter().map(|body| body.kind).collect(),
         };
@@ -161,6 +164,7 @@ impl Watch {
         let seen = &mut self.seen;
         seen.sums[1] = world.invariants();
         seen.direct_joints = world.counts().direct_joints;
+        seen.most_substeps = world.counts().substeps[1];
         seen.metrics.jit = if self.samples > 0.0 { (self.squares / self.samples).sqrt() } else { 0.0 };
         seen.metrics.drift = farthest(&seen.half, &seen.end, &seen.kinds);
         seen.metrics.settle_secs = self.slow_since;

@@ -126,18 +126,17 @@ pub const CASES: &[Case] = &[
         [60.0, 10.0],
         &[STANDS, STILL],
     ),
+    case(
+        ["t02_columns", "T2", "a tall column stands"],
+        scenes::column,
+        counted("boxes", 80.0, [10.0, 640.0]),
+        [60.0, 10.0],
+        &[NOT_SUNK],
+    ),
     Case {
-        missed: "it stands for 10 s, as 104 boxes do, but sways (13 cm lower at 10 s), and falls within 60; avbd holds 320 for 10 s",
-        ..case(
-            ["t02_columns", "T2", "a tall column stands"],
-            scenes::column,
-            counted("boxes", 80.0, [10.0, 320.0]),
-            [60.0, 10.0],
-            &[NOT_SUNK],
-        )
-    },
-    Case {
-        missed: "columns that lean by 7 and 9 cm a box rest on edges, and one relaxation a substep does not settle them (three do); with 16 substeps all stand that statics let stand",
+        missed: "as contacts begin to sag, the nine boxes on the lowest of a column that leans by 9 cm a box tip with 0.03 rad/s, \
+                 0.011 J/kg, where 0.003 J/kg carry them over its edge; with 16 substeps, which sag a quarter, all stand that \
+                 statics let stand",
         ..case(
             ["t03_tilted", "T3", "leaning columns stand that statics let stand"],
             scenes::tilted,
@@ -316,8 +315,8 @@ pub const CASES: &[Case] = &[
     ),
     case(
         ["t24_pile", "T24", "a pile at rest for a million steps"],
-        |_| scenes::pyramid(10.0),
-        counted("pile", 1.0, [1.0, 1.0]),
+        scenes::pyramid,
+        counted("base", 10.0, [2.0, 80.0]),
         [1e6 / 60.0, 60.0],
         &[NO_GAIN, STANDS],
     ),
@@ -333,7 +332,7 @@ pub const CASES: &[Case] = &[
         case(
             ["t24_churn", "T24", "bodies come into a tumbler and go for a million steps"],
             scenes::tumbling,
-            counted("bodies at first", 150.0, [150.0, 150.0]),
+            counted("bodies at first", 150.0, [150.0, 600.0]),
             [1e6 / 60.0, 60.0],
             &[],
         ),
@@ -370,7 +369,7 @@ pub const CASES: &[Case] = &[
         case(
             ["t28_shapes", "T28", "what is hardly a shape is refused or stays finite"],
             |_| scenes::column(1.0),
-            counted("pile", 1.0, [1.0, 1.0]),
+            lowered("share of thicknesses", "", 1.0, [1e-6, 1.0]),
             [1.0, 1.0],
             &[],
         ),

@@ -226,6 +226,16 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
             directly.join(", ")
         ));
     }
+    let paced: Vec<String> = ours()
+        .filter(|row| row.most_substeps > row.substeps)
+        .map(|row| format!("{} in {}", row.most_substeps, row.case))
+        .collect();
+    if !paced.is_empty() {
+        all.push(format!(
+            "Islands in which a slender stack would buckle with {substeps} substeps get more of themselves: {}.",
+            paced.join(", ")
+        ));
+    }
     all.extend(ours().filter(|row| !row.pass).map(|row| {
         let about = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.about);
         let broke = row.failed.as_ref().map_or_else(String::new, |failed| format!("; broke off: {failed}"));

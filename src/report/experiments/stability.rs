@@ -44,7 +44,8 @@ impl Record for Row {
     const COMMAND: &'static str = "lamina report --only stability";
     const NOTE: &'static str = "Piles left to stand. Moved: the farthest any body is from where it began, which is what it has sunk; \
                a body's size or more says that it fell. Drift: since half the time. `avbd` visits contacts ten times per \
-               substep, `pgs` eight times, `soft` and `xpbd` twice. `sag`: substeps per island (`--max-sag`).";
+               substep, `pgs` eight times, `soft` and `xpbd` twice. One number: all islands have it (`--fixed-substeps`); `4+`: \
+               slender stacks get more, as by default; `sag`: each island gets its own (`--max-sag`).";
     const HEADER: &'static [&'static str] = &[
         "scene",
         "solver",
@@ -88,11 +89,12 @@ const SCENES: [&str; 10] = [
     "cards/3",
     "cards/4",
 ];
-const CHOICES: [(Solver, Substeps); 8] = [
+const CHOICES: [(Solver, Substeps); 9] = [
     (Solver::Soft, Substeps::Fixed(2)),
     (Solver::Soft, Substeps::Fixed(4)),
     (Solver::Soft, Substeps::Fixed(8)),
     (Solver::Soft, Substeps::Fixed(16)),
+    (Solver::Soft, Substeps::AtLeast(4)),
     (Solver::Soft, Substeps::ForSag(1e-3)),
     (Solver::Pgs, Substeps::Fixed(4)),
     (Solver::Xpbd, Substeps::Fixed(8)),
@@ -104,6 +106,8 @@ const CHOICES: [(Solver, Substeps); 8] = [
 pub enum Substeps {
     /// The same number for all.
     Fixed(u32),
+    /// More for islands with a slender stack; see [`crate::solve::tower`].
+    AtLeast(u32),
     /// Per island, for contacts that sag by so much at most, metres; see [`crate::solve::pace`].
     ForSag(f64),
 }
@@ -118,6 +122,7 @@ impl std::fmt::Display for Substeps {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Fixed(substeps) => write!(f, "{substeps}"),
+            Self::AtLeast(substeps) => write!(f, "{substeps}+"),
             Self::ForSag(metres) => write!(f, "sag {} mm", metres * 1e3),
         }
     }
@@ -143,7 +148,10 @@ pub fn run(quick: bool, seconds: f64) -> anyhow::Result<Vec<Row>> {
 fn stand(name: &'static str, solver: Solver, substeps: Substeps, seconds: f64) -> anyhow::Result<Row> {
     let scene = by_name(name, None, 1)?;
     let settings = match substeps {
-        Substeps::Fixed(substeps) => Settings { solver, substeps, ..Settings::default() },
+        Substeps::Fixed(substeps) => {
+            Settings { solver, substeps, fixed_substeps: true, ..Settings::default() }
+        }
+        Substeps::AtLeast(substeps) => Settings { solver, substeps, ..Settings::default() },
         Substeps::ForSag(max_sag) => Settings { solver, max_sag: Some(max_sag), ..Settings::default() },
     };
     let mut world = simulate(&scene, settings)?;
