@@ -11,8 +11,9 @@
 //!
 //! Which contacts carry something alone is found by peeling: a body with one contact is given to the body below it, with
 //! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What has its centre
-//! of mass not above its contact's points adds nothing, as on a single point: no stiffness keeps it from tipping. Weights are those of uniform gravity, not the
-//! impulses that contacts hold: they are right from the first step on, and an impact asks for nothing.
+//! of mass not above its contact's points adds nothing, as on a single point: no stiffness keeps it from tipping.
+//! Weights are those of uniform gravity, not the impulses that contacts hold: they are right from the first step on,
+//! and an impact asks for nothing.
 
 use super::constraint::Constraint;
 use super::pace::Goal;
@@ -79,6 +80,9 @@ impl Towers {
     ) {
         needs.clear();
         needs.resize(bodies.len(), 0.0);
+        if !self.edges.iter().any(|edge| edge.turn > 0.0) {
+            return;
+        }
         self.weigh(bodies, joined);
         let movable = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let one_left = |slot: &usize| self.parts[*slot].contacts == 1 && movable(*slot);
@@ -130,7 +134,7 @@ impl Towers {
         }
         for (slot, part) in self.parts.iter_mut().enumerate() {
             let inv_mass = bodies.inv_mass[slot].to_f64();
-            if inv_mass > 0.0 {
+            if inv_mass > 0.0 && part.contacts > 0 {
                 let mass = 1.0 / inv_mass;
                 part.mass = mass;
                 part.moment = [bodies.x[slot], bodies.y[slot]].map(|at| mass * at.to_f64());
