@@ -16,6 +16,7 @@ use serde_json::{Map, Value, json};
 use super::{output, refuse};
 
 /// Arguments of `lamina run`.
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 #[derive(Debug, clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct Args {
