@@ -174,8 +174,8 @@ impl Record for Scene {
     const TITLE: &'static str = "Beside Box2D v3 and rapier";
     const COMMAND: &'static str = "cargo run --release -p lamina-peers";
     const NOTE: &'static str = "All with 4 substeps or iterations, their defaults and ours (which gives slender stacks, as \
-         columns, more); medians of alternating windows in one process. `threads` are the peers', ours has one. Overlaps and case errors: lamina2d / Box2D / \
-         rapier.";
+         columns, more); medians of alternating windows in one process. `threads` are the peers', ours has one. \
+         Overlaps and case errors: lamina2d / Box2D / rapier.";
     const HEADER: &'static [&'static str] = &[
         "scene",
         "threads",

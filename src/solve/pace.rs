@@ -55,11 +55,9 @@ pub struct Paces<R: Real> {
     before: Vec<u32>,
     /// Which of `substeps` a slot has.
     index: Column<R>,
-    /// N/m_eff·dt per slot, of this look, m/s.
-    load: Vec<f64>,
-    /// Substeps it takes per slot to bear the load, of this look and the last.
-    needs: [Vec<f64>; 2],
-    /// The same to keep stacks from buckling.
+    /// N/m_eff·dt per slot, of this look and the last, m/s.
+    load: [Vec<f64>; 2],
+    /// Substeps it takes per slot to keep stacks from buckling.
     tower_needs: Vec<f64>,
     towers: Towers,
     /// Bodies have come since the last look: what they stand on has hardly sagged yet.
@@ -80,8 +78,7 @@ impl<R: Real> Default for Paces<R> {
             of_slot: Vec::new(),
             before: Vec::new(),
             index: Column::new(R::ZERO),
-            load: Vec::new(),
-            needs: Default::default(),
+            load: Default::default(),
             tower_needs: Vec::new(),
             towers: Towers::default(),
             fresh: true,
@@ -145,22 +142,24 @@ impl<R: Real> Paces<R> {
         self.fresh = true;
     }
 
-    /// Are islands to be told apart in this step? If not, the step has been counted.
-    pub fn wants(&mut self, goal: &Goal) -> bool {
+    /// Are islands to be told apart in this step? `looked`: it began with a look.
+    pub fn wants(&self, goal: &Goal, looked: bool) -> bool {
         let asked = || self.tower_needs.iter().any(|&needs| needs > f64::from(goal.base));
-        let wanted = self.is_paced() || goal.max_sag.is_some() || (self.looks(goal) && asked());
-        if !wanted {
-            self.fresh &= !self.looks(goal);
-            self.steps = self.steps.wrapping_add(1);
-        }
-        wanted
+        self.is_paced() || goal.max_sag.is_some() || (looked && asked())
+    }
+
+    /// Counts a step that began with a look, or did not.
+    pub fn count_step(&mut self, looked: bool) {
+        self.fresh &= !looked;
+        self.steps = self.steps.wrapping_add(1);
     }
 
     /// A visitor that reads the loads.
     pub fn reading(&mut self) -> Loads<'_> {
-        self.load.clear();
-        self.load.resize(self.of_slot.len(), 0.0);
-        Loads { load: &mut self.load, substeps: &self.of_slot }
+        self.load.swap(0, 1);
+        self.load[0].clear();
+        self.load[0].resize(self.of_slot.len(), 0.0);
+        Loads { load: &mut self.load[0], substeps: &self.of_slot }
     }
 
     /// A visitor that notes what touches.
@@ -168,17 +167,13 @@ impl<R: Real> Paces<R> {
         self.towers.reading(goal.touch)
     }
 
-    /// What slots need, by what has been read and noted. `joints`: the slots they join.
+    /// What stacks need, by what has been noted. `joints`: the slots they join.
     pub fn weigh(&mut self, goal: &Goal, bodies: &Bodies<R>, joints: impl Iterator<Item = [u32; 2]>) {
-        self.needs.swap(0, 1);
-        let [needs, _] = &mut self.needs;
-        needs.clear();
-        needs.extend(self.load.iter().map(|&load| goal.needed(load)));
-        needs.resize(bodies.len(), 0.0);
         self.towers.look(goal, bodies, joints, &mut self.tower_needs);
     }
 
-    /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join.
+    /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the
+    /// step began with a look.
     pub fn decide(
         &mut self,
         goal: &Goal,
@@ -186,14 +181,13 @@ impl<R: Real> Paces<R> {
         manifolds: &Manifolds<R>,
         joints: impl Iterator<Item = [u32; 2]>,
         runs: &[Range<usize>],
+        looked: bool,
     ) -> bool {
-        let looked = self.looks(goal);
-        self.steps = self.steps.wrapping_add(1);
         let resized = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        for needs in self.needs.iter_mut().chain([&mut self.tower_needs]) {
-            needs.resize(bodies.len(), 0.0);
+        for per_slot in self.load.iter_mut().chain([&mut self.tower_needs]) {
+            per_slot.resize(bodies.len(), 0.0);
         }
         self.join(bodies, manifolds, joints, runs);
         let joined = self.common_of_joined(goal, looked);
@@ -207,7 +201,6 @@ impl<R: Real> Paces<R> {
                 island => island.substeps,
             };
         }
-        self.fresh &= !looked;
         for slot in (0..bodies.len()).filter(|&slot| !bodies.is_alive(slot)) {
             self.of_slot[slot] = goal.base;
         }
@@ -265,8 +258,8 @@ impl<R: Real> Paces<R> {
             let own = self.islands[slot];
             let at = root(&mut self.parent, slot as u32) as usize;
             let island = &mut self.islands[at];
-            let [now, last] = self.needs.each_ref().map(|needs| needs[slot]);
-            island.needs = [island.needs[0].max(now.min(last)), island.needs[1].max(now.max(last))];
+            let [now, last] = self.load.each_ref().map(|load| load[slot]);
+            island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
             island.tower = island.tower.max(self.tower_needs[slot]);
             island.substeps = island.substeps.max(self.of_slot[slot]);
             island.touches |= own.touches;

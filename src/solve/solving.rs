@@ -124,17 +124,17 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) -> bool {
         let ends = || joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
-        if self.paces.looks(goal) {
+        let looked = self.paces.looks(goal);
+        if looked {
             if goal.max_sag.is_some() {
                 self.stream.visit(&mut self.paces.reading());
             }
             self.stream.visit(&mut self.paces.touching(goal));
             self.paces.weigh(goal, bodies, ends());
         }
-        if !self.paces.wants(goal) {
-            return false;
-        }
-        let changed = self.paces.decide(goal, bodies, manifolds, ends(), &motion.runs);
+        let wanted = self.paces.wants(goal, looked);
+        let changed = wanted && self.paces.decide(goal, bodies, manifolds, ends(), &motion.runs, looked);
+        self.paces.count_step(looked);
         if changed {
             self.hand_back(manifolds, motion);
             self.paces.scale_impulses(bodies, manifolds);

@@ -215,10 +215,11 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
     let mut all = vec![format!("Items of the table of stability that hold: {}.", passed.join(", "))];
     let (solver, substeps) = SHOWN[DEFAULT];
     let ours = || rows.iter().filter(|row| row.solver == solver && row.substeps == substeps);
-    let directly: Vec<String> = ours()
-        .filter(|row| row.direct_joints > 0)
-        .map(|row| format!("{} joints of {}", row.direct_joints, row.case))
-        .collect();
+    let list = |does: fn(&&Row) -> bool, what: fn(&Row) -> String| -> Vec<String> {
+        ours().filter(does).map(what).collect()
+    };
+    let directly =
+        list(|row| row.direct_joints > 0, |row| format!("{} joints of {}", row.direct_joints, row.case));
     if !directly.is_empty() {
         all.push(format!(
             "A direct solve takes over in {solver} where joints make up trees whose masses are 64 apart, or their ratio \
@@ -226,10 +227,8 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
             directly.join(", ")
         ));
     }
-    let paced: Vec<String> = ours()
-        .filter(|row| row.most_substeps > row.substeps)
-        .map(|row| format!("{} in {}", row.most_substeps, row.case))
-        .collect();
+    let paced =
+        list(|row| row.most_substeps > row.substeps, |row| format!("{} in {}", row.most_substeps, row.case));
     if !paced.is_empty() {
         all.push(format!(
             "Islands in which a slender stack would buckle with {substeps} substeps get more of themselves: {}.",
@@ -237,9 +236,9 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
         ));
     }
     all.extend(ours().filter(|row| !row.pass).map(|row| {
-        let about = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.about);
+        let case = CASES.iter().find(|case| case.name == row.case);
+        let [about, why] = [case.map_or("", |case| case.about), case.map_or("", |case| case.missed)];
         let broke = row.failed.as_ref().map_or_else(String::new, |failed| format!("; broke off: {failed}"));
-        let why = CASES.iter().find(|case| case.name == row.case).map_or("", |case| case.missed);
         let why = if why.is_empty() { String::new() } else { format!(": {why}") };
         format!(
             "{} ({about}) does not hold with {solver} ×{substeps}: {} asked, {} found{broke}{why}.",

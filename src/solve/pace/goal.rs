@@ -50,7 +50,7 @@ impl Goal {
     }
 
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.
-    pub(super) fn needed(&self, load: f64) -> f64 {
+    fn needed(&self, load: f64) -> f64 {
         let omega_h = 2.0 * std::f64::consts::PI * self.stiffness;
         self.max_sag.map_or(0.0, |max_sag| (load * self.dt_secs / (omega_h * omega_h * max_sag)).sqrt())
     }
@@ -76,8 +76,8 @@ fn below(substeps: u32) -> u32 {
 /// What an island is known to be.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Island {
-    /// Substeps its loads take: by what both of the last looks saw, and by what one of them did.
-    pub(super) needs: [f64; 2],
+    /// N/m_eff·dt of its hardest contact, m/s: what both of the last looks saw, and what one of them did.
+    pub(super) load: [f64; 2],
     /// Substeps its most slender stack takes.
     pub(super) tower: f64,
     /// The most a part of it has had.
@@ -96,7 +96,7 @@ pub(super) fn aimed(goal: &Goal, island: &Island, fresh: bool) -> u32 {
         let enough = RUNGS.into_iter().find(|&n| f64::from(n) >= tower);
         return enough.unwrap_or(RUNGS[RUNGS.len() - 1]).max(island.substeps);
     }
-    let [both, either] = island.needs.map(|needs| needs.max(tower));
+    let [both, either] = island.load.map(|load| goal.needed(load).max(tower));
     let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
     let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {
