@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput};
-use lamina2d::report::experiments::posed;
+use lamina::report::experiments::posed;
+use lamina::thesis::{ThesisIntegrator, ThesisWorld, Version};
 use lamina2d::scene::Scene;
 use lamina2d::scene::mixes::Mix;
 use lamina2d::simulation::Simulation;
-use lamina2d::thesis::{ThesisIntegrator, ThesisWorld, Version};
 
 use clock::criterion;
 use common::{Agreement, Answer, DT_SECS, SETTLE_STEPS, Settled, scene, step_through};

@@ -25,6 +25,7 @@ use std::ops::Range;
 
 use crate::column::Column;
 use crate::drive::{Drive, Drives};
+use crate::each::Each as _;
 use crate::lanes::{ROW, Real};
 use crate::scene::{BodyKind, BodySpec};
 use crate::shape::Shape;
@@ -74,7 +75,7 @@ struct Filter {
 fn turned<R: Real>(body: &HullRows<R>, c: R, s: R) -> HullRows<R> {
     // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
     let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {
-        [std::array::from_fn(|k| c * x[k] - s * y[k]), std::array::from_fn(|k| s * x[k] + c * y[k])]
+        [crate::each::indexed(|k| c * x[k] - s * y[k]), crate::each::indexed(|k| s * x[k] + c * y[k])]
     };
     let ([x, y], [nx, ny]) = (turn(&body[0], &body[1]), turn(&body[2], &body[3]));
     [x, y, nx, ny]
@@ -309,7 +310,7 @@ impl<R: Real> Bodies<R> {
         }
         if let Some(pivot) = spec.pivot {
             let drive = Drive::new(slot, pivot.into(), centroid, turn, spec.angular_velocity);
-            [self.vx[slot], self.vy[slot]] = drive.velocity().map(R::from_f64);
+            [self.vx[slot], self.vy[slot]] = drive.velocity().each(R::from_f64);
             self.drives.insert(drive);
         }
         self.inserted += 1;
@@ -392,7 +393,7 @@ impl<R: Real> Bodies<R> {
 
     /// The constant force (N, N) and torque (N·m) on the body in a slot.
     pub fn force_on(&self, slot: usize) -> [R; 3] {
-        self.force.as_ref().map_or([R::ZERO; 3], |columns| columns.each_ref().map(|column| column[slot]))
+        self.force.as_ref().map_or([R::ZERO; 3], |columns| columns.each_ref().each(|column| column[slot]))
     }
 
     /// Does some body go round a pivot?

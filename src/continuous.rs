@@ -34,6 +34,7 @@
 use glam::DVec2;
 
 use crate::body::{Bodies, Form};
+use crate::each::Each as _;
 use crate::integrate::{Fast, FastBodies};
 use crate::lanes::Real;
 use crate::scene::BodyKind;
@@ -45,7 +46,7 @@ const ADVANCES: usize = 64;
 
 /// The fast bodies of a step, and what they may meet; memory is kept from step to step.
 #[derive(Clone, Debug)]
-pub struct Continuous<R: Real> {
+pub(crate) struct Continuous<R: Real> {
     fast: Vec<Fast<R>>,
     /// Slots of static and kinematic bodies, ascending.
     obstacles: Vec<u32>,
@@ -61,14 +62,14 @@ impl<R: Real> Default for Continuous<R> {
 
 impl<R: Real> Continuous<R> {
     /// Notes which bodies can be in the way.
-    pub fn look_over(&mut self, bodies: &Bodies<R>) {
+    pub(crate) fn look_over(&mut self, bodies: &Bodies<R>) {
         let fixed = bodies.slots().filter(|&slot| bodies.kind(slot) != BodyKind::Dynamic);
         self.obstacles.clear();
         self.obstacles.extend(fixed.map(|slot| slot as u32));
     }
 
     /// Where a step is to note its fast bodies: nowhere if nothing can be in their way.
-    pub fn begin(&mut self, wanted: bool) -> FastBodies<'_, R> {
+    pub(crate) fn begin(&mut self, wanted: bool) -> FastBodies<'_, R> {
         self.fast.clear();
         (wanted && !self.obstacles.is_empty()).then_some(&mut self.fast)
     }
@@ -76,7 +77,7 @@ impl<R: Real> Continuous<R> {
     /// Moves the fast bodies of a step of `dt_secs` back to where they meet something. `skin_m`: what counts as
     /// touching, metres; `margin`: gaps the solver hears of; `apart`: pairs that do not collide, ordered; bodies moved
     /// back are marked in `stirred`.
-    pub fn stop(
+    pub(crate) fn stop(
         &mut self,
         bodies: &mut Bodies<R>,
         skin_m: f64,
@@ -132,7 +133,7 @@ impl<R: Real> Continuous<R> {
 fn put<R: Real>(bodies: &mut Bodies<R>, fast: &Fast<R>, from: DVec2, t: f64, met: &Sweep) {
     let slot = fast.slot as usize;
     let [.., c, s] = fast.start;
-    let [dx, dy, angle] = fast.moved.map(|moved| moved.to_f64() * t);
+    let [dx, dy, angle] = fast.moved.each(|moved| moved.to_f64() * t);
     let (at, rest) = (from + DVec2::new(dx, dy), 1.0 - t);
     let (carried, turn) = (met.carry(at, t), met.angle * rest);
     let rot = Rot { c, s }.turned(R::from_f64(angle + turn));
@@ -191,8 +192,8 @@ struct Sweep {
 
 impl Sweep {
     fn of_fast<R: Real>(bodies: &Bodies<R>, fast: &Fast<R>) -> Self {
-        let [x, y, c, s] = fast.start.map(R::to_f64);
-        let [dx, dy, angle] = fast.moved.map(R::to_f64);
+        let [x, y, c, s] = fast.start.each(R::to_f64);
+        let [dx, dy, angle] = fast.moved.each(R::to_f64);
         let still = Self::shape(bodies, fast.slot as usize);
         let [x, y] = if bodies.fine.is_some() {
             let [x, y] = bodies.place(fast.slot as usize);
@@ -207,7 +208,7 @@ impl Sweep {
     fn of_obstacle<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
         let [x, y] = bodies.place(slot);
         let [c, s, vx, vy, w] =
-            [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].map(|column| column[slot].to_f64());
+            [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].each(|column| column[slot].to_f64());
         let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
         let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
         Self { x, rot, moved, angle, ..Self::shape(bodies, slot) }
@@ -219,14 +220,14 @@ impl Sweep {
         let (disc, count) = match bodies.form(slot) {
             Form::Circle => (hx, 0),
             Form::Box => {
-                let corners = [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].map(DVec2::from);
+                let corners = [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].each(DVec2::from);
                 vertices[..4].copy_from_slice(&corners);
                 (0.0, 4)
             }
             Form::Polygon => {
                 let at = bodies.shapes(slot).start;
                 let [x, y, ..] = &bodies.polygons.body[at];
-                vertices = std::array::from_fn(|k| DVec2::new(x[k].to_f64(), y[k].to_f64()));
+                vertices = crate::each::indexed(|k| DVec2::new(x[k].to_f64(), y[k].to_f64()));
                 (0.0, usize::from(bodies.polygons.count[at]))
             }
         };
@@ -283,7 +284,7 @@ impl Sweep {
         Placed {
             centre: self.x + self.moved * t,
             disc: self.disc,
-            vertices: self.vertices.map(turned),
+            vertices: self.vertices.each(turned),
             count: self.count,
         }
     }

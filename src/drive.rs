@@ -25,7 +25,7 @@ use crate::vec2::{Rot, Vec2};
 
 /// One body's circle. 72 B: nothing here is read but by its own step.
 #[derive(Clone, Copy, Debug)]
-pub struct Drive {
+pub(crate) struct Drive {
     slot: usize,
     pivot: Vec2<f64>,
     /// From the pivot to the centroid when the body came, metres.
@@ -40,7 +40,13 @@ pub struct Drive {
 
 impl Drive {
     /// The circle of the body in `slot` round `pivot` (metres), from its pose as it comes.
-    pub fn new(slot: usize, pivot: DVec2, centroid: DVec2, attitude: DVec2, angular_velocity: f64) -> Self {
+    pub(crate) fn new(
+        slot: usize,
+        pivot: DVec2,
+        centroid: DVec2,
+        attitude: DVec2,
+        angular_velocity: f64,
+    ) -> Self {
         let arm = centroid - pivot;
         Self {
             slot,
@@ -53,7 +59,7 @@ impl Drive {
     }
 
     /// Along the tangent, m/s: what the body has before its first step.
-    pub fn velocity(&self) -> [f64; 2] {
+    pub(crate) fn velocity(&self) -> [f64; 2] {
         let v = self.arm.turned_by(self.angular_velocity);
         [v.x, v.y]
     }
@@ -75,33 +81,33 @@ impl Drive {
 
 /// The circles of all driven bodies of a world.
 #[derive(Clone, Debug, Default)]
-pub struct Drives {
+pub(crate) struct Drives {
     drives: Vec<Drive>,
 }
 
 impl Drives {
     /// Does nothing go round a pivot?
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.drives.is_empty()
     }
 
     /// Takes a body's circle in.
-    pub fn insert(&mut self, drive: Drive) {
+    pub(crate) fn insert(&mut self, drive: Drive) {
         self.drives.push(drive);
     }
 
     /// Forgets the circle of the body in `slot`, if it has one.
-    pub fn remove(&mut self, slot: usize) {
+    pub(crate) fn remove(&mut self, slot: usize) {
         self.drives.retain(|drive| drive.slot != slot);
     }
 
     /// Bytes held.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.drives.len() * size_of::<Drive>()
     }
 
     /// Sets velocities so that a step of `dt_secs` ends on the circles.
-    pub fn apply<R: Real>(&mut self, bodies: &mut Bodies<R>, dt_secs: f64) {
+    pub(crate) fn apply<R: Real>(&mut self, bodies: &mut Bodies<R>, dt_secs: f64) {
         for drive in &mut self.drives {
             drive.apply(bodies, dt_secs);
         }

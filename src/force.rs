@@ -8,6 +8,7 @@ mod field;
 
 use serde::{Deserialize, Serialize};
 
+use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::pair;
 use crate::settings::Settings;
@@ -219,7 +220,7 @@ impl Forces {
 
     /// The fields present, rounded to the engine's precision: constant ones first, those few scenes have last.
     pub fn fields<R: Real>(&self) -> Vec<Field<R>> {
-        let pair = |v: [f64; 2]| v.map(R::from_f64);
+        let pair = |v: [f64; 2]| v.each(R::from_f64);
         let wind = pair(self.wind.unwrap_or_default());
         let mut fields = Vec::new();
         fields.extend(self.gravity.map(|g| Field::Gravity(pair(g))));

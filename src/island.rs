@@ -26,11 +26,12 @@ use std::ops::Range;
 use crate::body::Bodies;
 use crate::column::Column;
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
 use crate::scene::BodyKind;
 
 /// All bodies of an island must have been quiet for so long before it falls asleep.
-pub const QUIET_SECS: f64 = 0.5;
+pub(crate) const QUIET_SECS: f64 = 0.5;
 /// Below this speed, in bounding radii per second, a body is quiet: in [`QUIET_SECS`] it then goes no further than
 /// a manifold is held to be unchanged ([`crate::integrate::STIR`]).
 ///
@@ -276,7 +277,7 @@ impl<R: Real> Islands<R> {
     }
 
     fn wake_ends(&mut self, ends: [u32; 2]) {
-        for end in ends.map(|end| end as usize) {
+        for end in ends.each(|end| end as usize) {
             if self.is_asleep(end) {
                 self.wake(end);
             }
@@ -295,11 +296,11 @@ impl<R: Real> Islands<R> {
         let per_sec = L::lit(QUIET_RADII_PER_SEC);
         let fall = if gravity > 0.0 { L::lit(QUIET_FALL_SECS * gravity) } else { L::splat(R::FAR) };
         let columns = [&bodies.vx, &bodies.vy, &bodies.w, &bodies.radius, &bodies.inv_mass];
-        let columns = columns.map(Column::lanes::<L>);
+        let columns = columns.each(Column::lanes::<L>);
         let times = self.quiet_secs.lanes_mut::<L>();
         let mut tired = Tired::default();
         for at in runs.iter().flat_map(|run| run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)) {
-            let [vx, vy, w, radius, inv_mass] = columns.map(|column| column[at]);
+            let [vx, vy, w, radius, inv_mass] = columns.each(|column| column[at]);
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
             let quiet = speed.lt((per_sec * radius).min(fall));
             let before = times[at];

@@ -11,6 +11,7 @@ mod check;
 mod spec;
 
 use crate::body::{Bodies, BodyId};
+use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::scene::BodyKind;
 use crate::vec2::{Rot, Vec2};
@@ -145,7 +146,7 @@ impl<R: Real> Joints<R> {
     /// An id whose joint is gone.
     pub fn anchors_world(&self, id: JointId, bodies: &Bodies<R>) -> Result<[[f64; 2]; 2], JointError> {
         let joint = self.get(id)?;
-        Ok([0, 1].map(|k| {
+        Ok([0, 1].each(|k| {
             let (at, rot) = pose(bodies, joint.bodies[k].slot());
             let [x, y] = joint.anchors_body[k];
             let world = at + rot.apply(Vec2::new(x, y));
@@ -204,8 +205,8 @@ impl<R: Real> Joints<R> {
         checker.check::<R>(&kind)?;
         let poses = [pose(bodies, a), pose(bodies, b)];
         let given = kind.anchors();
-        let world = [0, 1].map(|k| given[k].map_or(poses[k].0, |[x, y]| Vec2::new(x, y)));
-        let anchors_body = [0, 1].map(|k| {
+        let world = [0, 1].each(|k| given[k].map_or(poses[k].0, |[x, y]| Vec2::new(x, y)));
+        let anchors_body = [0, 1].each(|k| {
             let local = poses[k].1.apply_inverse(world[k] - poses[k].0);
             [local.x, local.y]
         });
@@ -266,7 +267,7 @@ impl<R: Real> Joints<R> {
     pub fn apart(&self) -> Vec<[u32; 2]> {
         let mut pairs: Vec<_> = (self.living().filter(|(_, joint)| !joint.collide))
             .map(|(_, joint)| {
-                let [a, b] = joint.bodies.map(|id| id.slot() as u32);
+                let [a, b] = joint.bodies.each(|id| id.slot() as u32);
                 [a.min(b), a.max(b)]
             })
             .collect();

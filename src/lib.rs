@@ -18,11 +18,10 @@
 //!
 //! | room | what is in it |
 //! |---|---|
+//! | package `lamina` in `src/lab` | the laboratory and the program: cases, experiments, the page; run time against error; where it breaks; instruction counts; the baseline engine |
 //! | `record`, `processor` (feature `record`) | recordings, written and read; the check that programs make first |
-//! | `report`, `accuracy`, `stress`, `gate`, `cli` (feature `cli`) | experiments, plots, the page; run time against error; where it breaks; instruction counts; the program `lamina` |
 //! | [`session`] | a run that is acted upon, and done again from its events |
 //! | [`simulation`] | a world of any precision and width behind one interface |
-//! | [`thesis`] | the baseline engine, faithful and tidy |
 //! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
@@ -99,51 +98,39 @@
 //! - Loops over a counted number of polygon edges: a third more instructions than unrolled to 4, 6 or 8.
 //! - `array::from_fn` inside a gather: left as a call by the compiler, 12 % of a step.
 
-#[cfg(feature = "cli")]
-pub mod accuracy;
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "the architecture names rooms that are not public; --document-private-items shows them"
+)]
+
 pub mod body;
-pub mod broad;
+mod broad;
 pub mod clock;
 pub mod column;
 pub mod contact;
-pub mod continuous;
-pub mod drive;
+mod continuous;
+mod drive;
+mod each;
 pub mod force;
-#[cfg(feature = "cli")]
-pub mod gate;
-pub mod integrate;
-pub mod island;
+mod integrate;
+mod island;
 pub mod joint;
 pub mod lanes;
 pub mod measure;
-pub mod narrow;
+mod narrow;
 mod pair;
 #[cfg(feature = "record")]
 pub mod processor;
 #[cfg(feature = "record")]
 pub mod record;
-#[cfg(feature = "cli")]
-pub mod report;
 pub mod scene;
 pub mod session;
 pub mod settings;
 pub mod shape;
 pub mod simulation;
-pub mod solve;
-#[cfg(feature = "cli")]
-pub mod stress;
-pub mod thesis;
+mod solve;
 pub mod vec2;
 pub mod world;
 
-/// Vector features the code was compiled for.
-#[cfg(feature = "record")]
-pub(crate) fn build_features() -> Vec<&'static str> {
-    let features = [
-        ("sse2", cfg!(target_feature = "sse2")),
-        ("avx", cfg!(target_feature = "avx")),
-        ("avx2", cfg!(target_feature = "avx2")),
-        ("avx512f", cfg!(target_feature = "avx512f")),
-    ];
-    features.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
-}
+#[doc(hidden)]
+pub mod internals;

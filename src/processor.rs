@@ -28,3 +28,14 @@ pub fn check() -> Result<(), &'static str> {
 pub fn check() -> Result<(), &'static str> {
     Ok(())
 }
+
+/// Vector features the code was compiled for.
+pub fn features() -> Vec<&'static str> {
+    let features = [
+        ("sse2", cfg!(target_feature = "sse2")),
+        ("avx", cfg!(target_feature = "avx")),
+        ("avx2", cfg!(target_feature = "avx2")),
+        ("avx512f", cfg!(target_feature = "avx512f")),
+    ];
+    features.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
+}

@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::body::{BodyError, BodyId};
+use crate::each::Each as _;
 use crate::force::Forces;
 use crate::pair;
 use crate::scene::{BodyKind, BodySpec, Scene};
@@ -168,8 +169,8 @@ impl Session {
                 self.world.set_kind(id, *kind, *mass)?;
             }
             Action::Pull { slot, point_body, target } => {
-                let places = point_body.map(|v| ("point_body", v)).into_iter();
-                let mut places = places.chain(target.map(|v| ("target", v)));
+                let places = point_body.each(|v| ("point_body", v)).into_iter();
+                let mut places = places.chain(target.each(|v| ("target", v)));
                 if let Some((field, value)) = places.find(|(_, value)| !value.is_finite()) {
                     return Err(ActionError::NonFinite { field, value });
                 }
@@ -184,7 +185,7 @@ impl Session {
                 let (integrator, solver, substeps) = (*integrator, *solver, *substeps);
                 let settings = *self.world.settings();
                 let of_soft = |asked: Option<f64>| asked.filter(|_| solver == Solver::Soft);
-                let [max_sag, stiffness] = [settings.max_sag, settings.stiffness].map(of_soft);
+                let [max_sag, stiffness] = [settings.max_sag, settings.stiffness].each(of_soft);
                 let asked = Settings { integrator, solver, substeps, max_sag, stiffness, ..settings };
                 self.world.set_settings(asked)?;
             }
@@ -250,7 +251,7 @@ fn impulse(pull: &Pull, body: &BodyView, h_secs: f64) -> ([f64; 2], f64) {
     let (stiffness, damping) = (mass * omega * omega, 2.0 * mass * PULL_DAMPING * omega);
     let soft = damping + h_secs * stiffness;
     let (gamma, beta) = (1.0 / (h_secs * soft), stiffness / soft);
-    let wanted = [0, 1].map(|k| velocity[k] + beta * (state.position[k] + arm[k] - pull.target[k]));
+    let wanted = [0, 1].each(|k| velocity[k] + beta * (state.position[k] + arm[k] - pull.target[k]));
     let (m, i) = (body.inv_mass, body.inv_inertia);
     let k11 = m + i * arm[1] * arm[1] + gamma;
     let k12 = -i * arm[0] * arm[1];
@@ -259,6 +260,6 @@ fn impulse(pull: &Pull, body: &BodyView, h_secs: f64) -> ([f64; 2], f64) {
     let p = [-inverse * (k22 * wanted[0] - k12 * wanted[1]), -inverse * (k11 * wanted[1] - k12 * wanted[0])];
     let (length, most) = ((p[0] * p[0] + p[1] * p[1]).sqrt(), mass * PULL_MOST * h_secs);
     let scale = if length > most { most / length } else { 1.0 };
-    let p = p.map(|part| part * scale);
+    let p = p.each(|part| part * scale);
     (p, arm[0] * p[1] - arm[1] * p[0])
 }

@@ -59,6 +59,10 @@ pub trait Simulation: Send {
     fn contacts(&self) -> Vec<Contact>;
     /// What the last step counted.
     fn counts(&self) -> Counts;
+    /// Bodies that sleep.
+    fn sleeping(&self) -> usize;
+    /// Bytes that a pass of the solver streams per two-point and per one-point contact.
+    fn bytes_per_contact(&self) -> [usize; 2];
     /// Time per stage since the last reset.
     fn times(&self) -> StageTimes;
     /// Sets stage times to zero.
@@ -72,12 +76,6 @@ pub trait Simulation: Send {
     /// Overlaps, by the `f64` check.
     fn penetration(&self) -> Penetration {
         measure::penetration(&self.outlines())
-    }
-    /// The error against the closed form of the scene this world was made of, after `t_secs`; see
-    /// [`measure::case_error`].
-    fn case_error(&self, scene: &Scene, t_secs: f64) -> Option<f64> {
-        let states = self.states();
-        measure::case_error(scene, t_secs, |body| (states[body].position, states[body].rotation))
     }
     /// Poses, velocities and, if wanted, contacts as bytes; see [`World::snapshot`].
     fn snapshot(&self, into: &mut Snapshot, contacts: bool);
@@ -242,6 +240,12 @@ where
     }
     fn counts(&self) -> Counts {
         *self.counts()
+    }
+    fn sleeping(&self) -> usize {
+        self.sleeping()
+    }
+    fn bytes_per_contact(&self) -> [usize; 2] {
+        crate::solve::stream::Stream::<L>::bytes_per_contact()
     }
     fn times(&self) -> StageTimes {
         *self.times()

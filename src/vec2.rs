@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
 
 /// `WIDTH` planar vectors.
@@ -177,7 +178,7 @@ impl<L: Lanes> Rot<L> {
     /// The angle in (−π, π]; for reports and drawing, never inside a step.
     pub fn angle_rad(self) -> [f64; 16] {
         let (c, s) = (self.c.to_array(), self.s.to_array());
-        std::array::from_fn(|k| s[k].to_f64().atan2(c[k].to_f64()))
+        crate::each::indexed(|k| s[k].to_f64().atan2(c[k].to_f64()))
     }
 }
 
@@ -194,7 +195,7 @@ pub fn sin_cos<L: Lanes>(theta: L) -> (L, L) {
         // What the reduction below yields for k = 0, to the bit: slow spin is the common case.
         return taylor(theta);
     }
-    let [p0, p1, p2] = L::Elem::HALF_PI.map(L::splat);
+    let [p0, p1, p2] = L::Elem::HALF_PI.each(L::splat);
     let inside = theta.abs().le(quarter);
     let k = (theta * L::lit(std::f64::consts::FRAC_2_PI)).round_small();
     let k = L::select(inside, L::zero(), k);

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use lamina2d::broad::BroadPhase;
+use lamina2d::internals::BroadPhase;
 use lamina2d::lanes::{Lanes, f32s};
 use lamina2d::settings::Broad;
 use lamina2d::world::World;

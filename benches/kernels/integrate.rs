@@ -2,7 +2,7 @@
 
 use lamina2d::body::Bodies;
 use lamina2d::force::{Field, Forces};
-use lamina2d::integrate::{self, Plan};
+use lamina2d::internals::{self, Plan};
 use lamina2d::lanes::{Lanes, f32s};
 use lamina2d::measure::state_hash;
 use lamina2d::settings::{Integrator, Skip, Skips};
@@ -41,7 +41,7 @@ impl Stage for Flight {
 
     fn run<L: Lanes<Elem = f32>>(&self, bodies: &mut Bodies<f32>) {
         let Self { integrator, ref fields, skips, .. } = *self;
-        integrate::fly::<L>(
+        internals::fly::<L>(
             &Plan {
                 integrator,
                 fields,

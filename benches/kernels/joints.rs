@@ -1,10 +1,10 @@
 //! Joints: found where they are, and `soft`'s two passes over them.
 
 use lamina2d::contact::Manifolds;
-use lamina2d::integrate;
+use lamina2d::internals;
+use lamina2d::internals::Solving;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
-use lamina2d::solve::Solving;
 
 use super::pile::{Memory, Pile, State, task};
 use super::{Kernel, Stage, answer_of, bits, list_widths};
@@ -45,10 +45,10 @@ impl Net {
             return state;
         }
         let warm = solving.begin(&task, bodies, manifolds, motion);
-        integrate::predict::<L>(&plan, bodies, motion, warm);
+        internals::predict::<L>(&plan, bodies, motion, warm);
         if self.part == Part::Relax {
             solving.solve(&task, motion, true);
-            assert!(integrate::advance::<L>(&plan, motion), "a substep that stays finite");
+            assert!(internals::advance::<L>(&plan, motion), "a substep that stays finite");
         }
         state
     }

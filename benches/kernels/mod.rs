@@ -5,9 +5,9 @@
 //!
 //! | group | what runs | its answer |
 //! |---|---|---|
-//! | `integrate` | [`lamina2d::integrate::fly`]: one step of free flight, attitudes turned | state hash, same with the closed form |
-//! | `broad` | [`lamina2d::broad::BroadPhase::find`] | the pairs, same for all methods |
-//! | `narrow` | [`lamina2d::narrow::Narrow::run`] on the pairs of one bucket, its pose rows included | the manifolds |
+//! | `integrate` | [`lamina2d::internals::fly`]: one step of free flight, attitudes turned | state hash, same with the closed form |
+//! | `broad` | [`lamina2d::internals::BroadPhase::find`] | the pairs, same for all methods |
+//! | `narrow` | [`lamina2d::internals::Narrow::run`] on the pairs of one bucket, its pose rows included | the manifolds |
 //! | `prepare` | colours, batches and constraints of all contacts | the order in colours; every contact once, no dynamic body twice in a colour |
 //! | `solve` | a solver's pass over contacts before bodies move, or (`_settle`, of `soft` the relaxation) after | the rows, displacements, impulses |
 //! | `store` | gaps and impulses handed back from constraints to pairs | gaps and impulses |
@@ -22,8 +22,8 @@ mod pile;
 mod prepare;
 mod solve;
 
+use lamina2d::internals::Traits;
 use lamina2d::lanes::{Lanes, f32s};
-use lamina2d::solve::Traits;
 use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::common::{Answer, Settled};

@@ -1,8 +1,8 @@
 //! Manifolds of the pairs of one bucket.
 
 use lamina2d::body::Form;
+use lamina2d::internals::Narrow;
 use lamina2d::lanes::Lanes;
-use lamina2d::narrow::Narrow;
 
 use super::pile::Pile;
 use super::{Kernel, SIZES, Stage, answer_of, list_widths, margin};

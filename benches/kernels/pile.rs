@@ -1,16 +1,12 @@
 //! Settled bodies with the pairs and contacts of their next step: what contact kernels work on.
 
 use lamina2d::body::{Bodies, Form};
-use lamina2d::broad::BroadPhase;
 use lamina2d::contact::Manifolds;
 use lamina2d::force::{Field, Forces};
-use lamina2d::integrate::{Motion, Plan};
+use lamina2d::internals::{BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, Solving, Task};
 use lamina2d::joint::Joints;
 use lamina2d::lanes::{Lanes, f32s};
-use lamina2d::narrow::Narrow;
 use lamina2d::settings::{Broad, Integrator, Skips, Solver};
-use lamina2d::solve::soft::HERTZ_TIMES_SUBSTEP;
-use lamina2d::solve::{self, Solving, Task};
 
 use super::{TRAITS, margin};
 use crate::common::{DT_SECS, SETTLE_STEPS, Settled};
@@ -74,8 +70,8 @@ impl Pile {
             since_secs: 0.0,
             substeps: 1,
             skips: Skips::NONE,
-            moving: solve::pushes(solver),
-            carries: solve::carries_impulses(solver),
+            moving: lamina2d::internals::pushes(solver),
+            carries: lamina2d::internals::carries_impulses(solver),
         }
     }
 }

@@ -1,10 +1,8 @@
 //! Contacts become constraints: colours, batches, masses and levers.
 
-use lamina2d::integrate::Motion;
+use lamina2d::internals::{Motion, Narrow, Solving};
 use lamina2d::lanes::Lanes;
-use lamina2d::narrow::Narrow;
 use lamina2d::scene::BodyKind;
-use lamina2d::solve::Solving;
 
 use super::pile::Pile;
 use super::{Kernel, SIZES, Stage, answer_of, list_widths};

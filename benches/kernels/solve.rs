@@ -1,6 +1,6 @@
 //! One solver's pass over the contacts of a pile, and what it leaves handed back to the pairs.
 
-use lamina2d::integrate;
+use lamina2d::internals;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
 
@@ -38,12 +38,12 @@ impl Pass {
         };
         let State { motion, manifolds, solving } = &mut state;
         let warm = solving.begin(&task, bodies, manifolds, motion);
-        integrate::predict::<L>(&plan, bodies, motion, warm);
+        internals::predict::<L>(&plan, bodies, motion, warm);
         if self.part == Part::Solve {
             return state;
         }
         solving.solve(&task, motion, true);
-        assert!(integrate::advance::<L>(&plan, motion), "a substep that stays finite");
+        assert!(internals::advance::<L>(&plan, motion), "a substep that stays finite");
         if self.part == Part::Settle && self.solver == Solver::Avbd {
             // It cuts bodies into batches in its first pass after contacts have changed: not what a pass is.
             let untouched = (state.motion.clone(), state.manifolds.clone());

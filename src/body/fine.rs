@@ -7,6 +7,7 @@
 
 use super::Bodies;
 use crate::column::{Column, PAD};
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::vec2::Vec2;
 
@@ -41,7 +42,7 @@ impl<R: Real> Bodies<R> {
 
     /// Puts a body's centroid there, metres.
     pub fn set_place(&mut self, slot: usize, place: [f64; 2]) {
-        let [x, y] = place.map(R::from_f64);
+        let [x, y] = place.each(R::from_f64);
         (self.x[slot], self.y[slot]) = (x, y);
         if let Some(rows) = &mut self.fine {
             let rest = |place: f64, column: R| R::from_f64(place - column.to_f64());

@@ -37,7 +37,7 @@ impl<R: Real> Polygons<R> {
         let outline = shape.outline();
         let normals = edge_normals(&outline);
         let row = |f: &dyn Fn(usize) -> f64| {
-            std::array::from_fn(|k| R::from_f64(f(if k < outline.len() { k } else { 0 })))
+            crate::each::indexed(|k| R::from_f64(f(if k < outline.len() { k } else { 0 })))
         };
         self.body[at] =
             [row(&|k| outline[k].x), row(&|k| outline[k].y), row(&|k| normals[k].x), row(&|k| normals[k].y)];

@@ -10,6 +10,7 @@
 
 use crate::body::Bodies;
 use crate::column::Column;
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
 
 /// Skin over the median radius of movable bodies.
@@ -108,10 +109,10 @@ impl<R: Real> Keep<R> {
         let (bound_l, ahead) = (L::splat(bound), L::splat(ahead_secs));
         let looks_ahead = ahead_secs > R::ZERO;
         let columns =
-            [&bodies.x, &bodies.y, &self.x, &self.y, &bodies.vx, &bodies.vy].map(Column::lanes::<L>);
+            [&bodies.x, &bodies.y, &self.x, &self.y, &bodies.vx, &bodies.vy].each(Column::lanes::<L>);
         let masses = bodies.inv_mass.lanes::<L>();
         let chunks = bodies.len().div_ceil(L::WIDTH);
-        let [sx, sy, su, sv] = self.shift(bodies, along).map(L::splat);
+        let [sx, sy, su, sv] = self.shift(bodies, along).each(L::splat);
         let moved = (0..chunks).any(|k| {
             let (dx, dy) = (columns[0][k] - columns[2][k] - sx, columns[1][k] - columns[3][k] - sy);
             let path = dx * dx + dy * dy;

@@ -6,6 +6,7 @@
 use super::{meet, ordered};
 use crate::body::{Bodies, Form};
 use crate::column::Column;
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::scene::BodyKind;
 use crate::vec2::{Rot, Vec2};
@@ -84,7 +85,7 @@ impl<R: Real> LongBodies<R> {
                         R::from_f64(f64::midpoint(low[0], high[0])),
                         R::from_f64(f64::midpoint(low[1], high[1])),
                     ],
-                    half: half.map(|h| R::from_f64(h * (1.0 + 1e-5))),
+                    half: half.each(|h| R::from_f64(h * (1.0 + 1e-5))),
                 });
             } else {
                 self.plain.push(slot as u32);
@@ -182,7 +183,7 @@ struct Placed<L> {
 impl<L: Lanes> Placed<L> {
     fn new(bodies: &Bodies<L::Elem>, bound: &Bound<L::Elem>, reach: &Column<L::Elem>) -> Self {
         let k = bound.slot as usize;
-        let half = bound.half.map(|h| h + reach[k]);
+        let half = bound.half.each(|h| h + reach[k]);
         Self {
             x: L::splat(bodies.x[k]),
             y: L::splat(bodies.y[k]),

@@ -2,6 +2,7 @@
 
 use crate::body::Bodies;
 use crate::column::Column;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 
@@ -52,7 +53,7 @@ impl<R: Real> Reach<R> {
             }
             return;
         }
-        let [mean_x, mean_y] = mean_velocity(bodies).map(L::splat);
+        let [mean_x, mean_y] = mean_velocity(bodies).each(L::splat);
         let (margin, skin, ahead) = (L::splat(half * margin), L::splat(half * skin), L::splat(ahead_secs));
         let (vx, vy) = (bodies.vx.lanes::<L>(), bodies.vy.lanes::<L>());
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
@@ -78,5 +79,5 @@ fn mean_velocity<R: Real>(bodies: &Bodies<R>) -> [R; 2] {
         sum[1] += bodies.vy[slot].to_f64();
         count += 1.0;
     }
-    sum.map(|v| R::from_f64(v / count.max(1.0)))
+    sum.each(|v| R::from_f64(v / count.max(1.0)))
 }

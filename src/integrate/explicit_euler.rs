@@ -4,6 +4,7 @@
 //! because it is never stable. Source: Euler, Institutionum calculi integralis, 1768.
 
 use super::{Advance, Block, Scheme, Step, along};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 pub(super) struct ExplicitEuler;
@@ -17,7 +18,7 @@ impl Scheme for ExplicitEuler {
         accel: impl Fn(&Block<L>, &Block<L>, f64) -> Block<L>,
     ) -> Advance<L> {
         let a = accel(x, v, 0.0);
-        Advance { displacement: v.map(|v| v * step.h), velocity: along(v, step.h, &a) }
+        Advance { displacement: v.each(|v| v * step.h), velocity: along(v, step.h, &a) }
     }
 
     #[inline(always)]

@@ -34,6 +34,7 @@ use std::ops::Range;
 
 use crate::body::Bodies;
 use crate::column::Column;
+use crate::each::Each as _;
 use crate::force::{Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::settings::{Integrator, Skip};
@@ -41,7 +42,8 @@ use crate::vec2::{Rot, Vec2};
 
 pub use motion::{Motion, Warm};
 pub use plan::Plan;
-pub use scheme::{Advance, BLOCK, Block, Scheme, Step};
+pub use scheme::BLOCK;
+pub(crate) use scheme::{Advance, Block, Scheme, Step};
 
 use motion::{Chosen, load_four, store_four};
 use scheme::{ClosedForm, along, drift};
@@ -58,7 +60,7 @@ pub struct Fast<R> {
 }
 
 /// The fast bodies of a step, by slot; `None` where nobody asks.
-pub type FastBodies<'a, R> = Option<&'a mut Vec<Fast<R>>>;
+pub(crate) type FastBodies<'a, R> = Option<&'a mut Vec<Fast<R>>>;
 
 /// Notes the fast among the bodies of one lane value, before their poses change.
 #[inline(always)]
@@ -71,13 +73,13 @@ fn note_fast<L: Lanes>(
 ) {
     let is_fast = bodies.core.lanes::<L>()[at].lt(path);
     if is_fast.any() {
-        let moved = moved.map(L::to_array);
+        let moved = moved.each(L::to_array);
         for lane in set_lanes(is_fast.bits()) {
             let slot = at * L::WIDTH + lane;
             fast.push(Fast {
                 slot: slot as u32,
-                start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].map(|column| column[slot]),
-                moved: moved.map(|lanes| lanes[lane]),
+                start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].each(|column| column[slot]),
+                moved: moved.each(|lanes| lanes[lane]),
             });
         }
     }
@@ -161,7 +163,7 @@ fn block<L: Lanes>(column: &Column<L::Elem>, at: usize) -> &[L; BLOCK] {
 /// Vectors from two blocks of coordinates.
 #[inline(always)]
 fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
-    std::array::from_fn(|i| Vec2::new(x[i], y[i]))
+    crate::each::indexed(|i| Vec2::new(x[i], y[i]))
 }
 
 /// The lane values of the block that starts at one.
@@ -190,7 +192,7 @@ fn angular_acceleration<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Option
     let inv_inertia = block::<L>(&bodies.inv_inertia, at);
     bodies.force.as_ref().map(|f| {
         let torque = block::<L>(&f[2], at);
-        std::array::from_fn(|i| torque[i] * inv_inertia[i])
+        crate::each::indexed(|i| torque[i] * inv_inertia[i])
     })
 }
 
@@ -209,11 +211,11 @@ fn fly_with<L: Lanes, S: Scheme>(
         let matter = matter(bodies, at);
         let mut moved = [Vec2::zero(); BLOCK];
         for substep in 0..plan.substeps {
-            let here = std::array::from_fn(|i| x[i] + moved[i]);
+            let here = crate::each::indexed(|i| x[i] + moved[i]);
             let since = |c: f64| plan.since_secs + plan.h_secs * (f64::from(substep) + c);
             let next =
                 S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
-            moved = std::array::from_fn(|i| moved[i] + next.displacement[i]);
+            moved = crate::each::indexed(|i| moved[i] + next.displacement[i]);
             v = next.velocity;
         }
         let mut w = *block::<L>(&bodies.w, at);
@@ -247,7 +249,7 @@ fn fly_with<L: Lanes, S: Scheme>(
                 bodies.move_lanes(at + i, [moved.x, moved.y]);
             }
         } else {
-            store_block(&mut bodies.x, &mut bodies.y, at, &std::array::from_fn(|i| x[i] + moved[i]));
+            store_block(&mut bodies.x, &mut bodies.y, at, &crate::each::indexed(|i| x[i] + moved[i]));
         }
         store_block(&mut bodies.vx, &mut bodies.vy, at, &v);
     }
@@ -324,15 +326,15 @@ fn predict_with<L: Lanes, S: Scheme>(
         begun.read(plan.carries, bodies, motion, start, from);
         let Begun { inv_mass, state, warm, total } = &mut begun;
         let chosen = motion.pace.map(|pace| -> [Chosen<L>; BLOCK] {
-            std::array::from_fn(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i]))
+            crate::each::indexed(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i]))
         });
         for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
             // What drives bodies without mass in one pace is no warm start in the next.
-            *warm = warm.map(|warm| L::select(chosen.massless, L::zero(), warm));
+            *warm = warm.each(|warm| L::select(chosen.massless, L::zero(), warm));
         }
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
-        let here = std::array::from_fn(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
-        let v = std::array::from_fn(|i| Vec2::new(state[i][0], state[i][1]));
+        let here = crate::each::indexed(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
+        let v = crate::each::indexed(|i| Vec2::new(state[i][0], state[i][1]));
         let matter = Matter { inv_mass, ..matter(bodies, start) };
         let since = |c: f64| plan.since_secs + plan.h_secs * c;
         let next = S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
@@ -360,7 +362,7 @@ fn predict_with<L: Lanes, S: Scheme>(
             }
             if let Some(chosen) = &chosen {
                 let old = load_four::<L>(&motion.velocity, at);
-                row = std::array::from_fn(|k| L::select(chosen[i].moves, row[k], old[k]));
+                row = crate::each::indexed(|k| L::select(chosen[i].moves, row[k], old[k]));
             }
             store_four::<L>(&mut motion.velocity, at, row);
         }
@@ -391,8 +393,8 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
         if let Some(pace) = motion.pace {
             let chosen = Chosen::<L>::new(&motion.paces, pace, at, row[3]);
             let old = load_four::<L>(&motion.moved, at);
-            velocity = std::array::from_fn(|k| L::select(chosen.moves, velocity[k], row[k]));
-            moved = std::array::from_fn(|k| L::select(chosen.moves, moved[k], old[k]));
+            velocity = crate::each::indexed(|k| L::select(chosen.moves, velocity[k], row[k]));
+            moved = crate::each::indexed(|k| L::select(chosen.moves, moved[k], old[k]));
         }
         store_four::<L>(&mut motion.velocity, at, velocity);
         store_four::<L>(&mut motion.moved, at, moved);
@@ -409,13 +411,13 @@ pub const STIR: f64 = 4e-3;
 /// have gone further than [`STIR`] of their radius since they last did are noted as stirred, fast ones in `fast`.
 /// `speeds`, m/s, that no two bodies' points reach together while no body's reaches half of them: those of
 /// [`Motion::swift`] and [`Motion::lively`].
-pub fn finish<L: Lanes>(
+pub(crate) fn finish<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
     mut fast: FastBodies<'_, L::Elem>,
     speeds: [f64; 2],
 ) {
-    let (bound, [half_swift, half_lively]) = (L::lit(STIR), speeds.map(|speed| L::lit(0.5 * speed)));
+    let (bound, [half_swift, half_lively]) = (L::lit(STIR), speeds.each(|speed| L::lit(0.5 * speed)));
     let (mut any_stirred, mut any_swift, mut any_lively) = (0, 0, 0);
     let is_fine = bodies.fine.is_some();
     let runs = std::mem::take(&mut motion.runs);
@@ -425,7 +427,7 @@ pub fn finish<L: Lanes>(
             let at = start + i;
             let [vx, vy, w, _] = load_four::<L>(&motion.velocity, at);
             let last = load_four::<L>(&motion.moved, at);
-            let moved: [L; 3] = std::array::from_fn(|k| motion.total[k].lanes::<L>()[at] + last[k]);
+            let moved: [L; 3] = crate::each::indexed(|k| motion.total[k].lanes::<L>()[at] + last[k]);
             let radius = bodies.radius.lanes::<L>()[at];
             let path = path_of(moved, radius);
             if let Some(fast) = &mut fast {

@@ -29,11 +29,11 @@ impl Scheme for Rk4 {
         let v4 = along(v, h, &k3);
         let k4 = accel(&along(x, h, &v3), &v4, 1.0);
         let (half, third, two_thirds) = (L::lit(0.5), L::lit(1.0 / 3.0), L::lit(2.0 / 3.0));
-        let kick: Block<L> = std::array::from_fn(|i| {
+        let kick: Block<L> = crate::each::indexed(|i| {
             let (ends, middle) = ((k1[i] + k4[i]) * half, (k2[i] + k3[i]) * half);
             ends + (middle - ends) * two_thirds
         });
-        let pull: Block<L> = std::array::from_fn(|i| k1[i] + ((k2[i] - k1[i]) + (k3[i] - k1[i])) * third);
+        let pull: Block<L> = crate::each::indexed(|i| k1[i] + ((k2[i] - k1[i]) + (k3[i] - k1[i])) * third);
         Advance { displacement: drift(step, v, &pull), velocity: along(v, h, &kick) }
     }
 }

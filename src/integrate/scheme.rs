@@ -7,11 +7,11 @@ use crate::vec2::Vec2;
 pub const BLOCK: usize = 4;
 
 /// A vector per body of a block.
-pub type Block<L> = [Vec2<L>; BLOCK];
+pub(crate) type Block<L> = [Vec2<L>; BLOCK];
 
 /// h, ½h and ½h² in lanes, seconds.
 #[derive(Clone, Copy, Debug)]
-pub struct Step<L> {
+pub(crate) struct Step<L> {
     /// h.
     pub h: L,
     /// ½h.
@@ -22,7 +22,7 @@ pub struct Step<L> {
 
 impl<L: Lanes> Step<L> {
     /// Of a step of `h_secs`.
-    pub fn new(h_secs: f64) -> Self {
+    pub(crate) fn new(h_secs: f64) -> Self {
         let h = L::Elem::from_f64(h_secs);
         let half = L::Elem::from_f64(0.5);
         Self { h: L::splat(h), half_h: L::splat(half * h), half_h2: L::splat(half * h * h) }
@@ -31,7 +31,7 @@ impl<L: Lanes> Step<L> {
 
 /// What a scheme makes of one step of a block.
 #[derive(Clone, Copy, Debug)]
-pub struct Advance<L> {
+pub(crate) struct Advance<L> {
     /// Metres.
     pub displacement: Block<L>,
     /// At the end of the step, m/s.
@@ -39,7 +39,7 @@ pub struct Advance<L> {
 }
 
 /// An integrator: the same signature for every scheme.
-pub trait Scheme {
+pub(crate) trait Scheme {
     /// Advances (x, v) by one step under `accel(x, v, c)`, whose c is the stage's time in steps since this one began.
     fn advance<L: Lanes>(
         step: Step<L>,
@@ -76,11 +76,11 @@ impl Scheme for ClosedForm {
 /// a + k·b for each body of a block.
 #[inline(always)]
 pub(super) fn along<L: Lanes>(a: &Block<L>, k: L, b: &Block<L>) -> Block<L> {
-    std::array::from_fn(|i| a[i] + b[i] * k)
+    crate::each::indexed(|i| a[i] + b[i] * k)
 }
 
 /// h·v + ½h²·a for each body of a block.
 #[inline(always)]
 pub(super) fn drift<L: Lanes>(step: Step<L>, v: &Block<L>, a: &Block<L>) -> Block<L> {
-    std::array::from_fn(|i| v[i] * step.h + a[i] * step.half_h2)
+    crate::each::indexed(|i| v[i] * step.h + a[i] * step.half_h2)
 }

@@ -4,6 +4,7 @@
 //! Geometric Numerical Integration, I.1.2.
 
 use super::{Advance, Block, Scheme, Step, along};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 pub(super) struct SemiImplicitEuler;
@@ -18,7 +19,7 @@ impl Scheme for SemiImplicitEuler {
     ) -> Advance<L> {
         let a = accel(x, v, 0.0);
         let velocity = along(v, step.h, &a);
-        Advance { displacement: velocity.map(|v| v * step.h), velocity }
+        Advance { displacement: velocity.each(|v| v * step.h), velocity }
     }
 
     #[inline(always)]

@@ -19,9 +19,9 @@ impl Scheme for VelocityVerlet {
     ) -> Advance<L> {
         let a0 = accel(x, v, 0.0);
         let displacement = drift(step, v, &a0);
-        let x1: Block<L> = std::array::from_fn(|i| x[i] + displacement[i]);
+        let x1: Block<L> = crate::each::indexed(|i| x[i] + displacement[i]);
         let a1 = accel(&x1, &along(v, step.h, &a0), 1.0);
-        let mean: Block<L> = std::array::from_fn(|i| a0[i] + (a1[i] - a0[i]) * L::lit(0.5));
+        let mean: Block<L> = crate::each::indexed(|i| a0[i] + (a1[i] - a0[i]) * L::lit(0.5));
         Advance { displacement, velocity: along(v, step.h, &mean) }
     }
 }

@@ -35,7 +35,7 @@ impl Scheme for Yoshida4 {
         let x3 = along(&x2, h(f64::midpoint(W1, W0)), &v2);
         let a3 = accel(&x3, &v2, 1.0 - W1 / 2.0);
         let weighted = |d2: f64, d3: f64| -> Block<L> {
-            std::array::from_fn(|i| a1[i] + ((a2[i] - a1[i]) * L::lit(d2) + (a3[i] - a1[i]) * L::lit(d3)))
+            crate::each::indexed(|i| a1[i] + ((a2[i] - a1[i]) * L::lit(d2) + (a3[i] - a1[i]) * L::lit(d3)))
         };
         let kick = weighted(W0, W1);
         // Twice d·(1 − c): what a kick at c adds to the position at the end, over ½h².

@@ -5,6 +5,7 @@ use std::ops::{BitAnd, BitOr, Not};
 use wide::{f32x4, f32x8, f32x16, f64x4};
 
 use super::{LaneMask, Lanes, ROW};
+use crate::each::Each as _;
 
 /// A mask over the lanes of `V`: all bits of a lane set, or none.
 #[derive(Clone, Copy, Debug)]
@@ -169,9 +170,9 @@ fn gather_f32x16(rows: &[[f32; ROW]], index: &[u32]) -> [f32x16; ROW] {
 
 #[inline(always)]
 fn store_f32x16(from: [f32x16; ROW], to: &mut [[f32; ROW]]) {
-    let halves: [[f32x8; 2]; ROW] = from.map(bytemuck::cast);
-    store_f32x8(halves.map(|h| h[0]), &mut to[..8]);
-    store_f32x8(halves.map(|h| h[1]), &mut to[8..16]);
+    let halves: [[f32x8; 2]; ROW] = from.each(bytemuck::cast);
+    store_f32x8(halves.each(|h| h[0]), &mut to[..8]);
+    store_f32x8(halves.each(|h| h[1]), &mut to[8..16]);
 }
 
 // Four rows of eight are two 4×4 transposes side by side; the same text serves f32 and f64.
@@ -245,9 +246,9 @@ fn transpose_halves([a, b, c, d]: [f32x8; 4]) -> [f32x8; 4] {
 #[cfg(not(target_feature = "avx"))]
 #[inline(always)]
 fn transpose_halves(rows: [f32x8; 4]) -> [f32x8; 4] {
-    let halves: [[f32x4; 2]; 4] = rows.map(bytemuck::cast);
-    let low = f32x4::transpose(halves.map(|h| h[0]));
-    let high = f32x4::transpose(halves.map(|h| h[1]));
+    let halves: [[f32x4; 2]; 4] = rows.each(bytemuck::cast);
+    let low = f32x4::transpose(halves.each(|h| h[0]));
+    let high = f32x4::transpose(halves.each(|h| h[1]));
     bytemuck::cast([[low[0], high[0]], [low[1], high[1]], [low[2], high[2]], [low[3], high[3]]])
 }
 
@@ -280,7 +281,7 @@ fn gather_fours_f32x16(fours: &[[f32; 4]], index: &[u32]) -> [f32x16; 4] {
 
 #[inline(always)]
 fn scatter_fours_f32x16(from: [f32x16; 4], to: &mut [[f32; 4]], index: &[u32]) {
-    let halves: [[f32x8; 2]; 4] = from.map(bytemuck::cast);
-    scatter_fours_f32x8(halves.map(|h| h[0]), to, &index[..8]);
-    scatter_fours_f32x8(halves.map(|h| h[1]), to, &index[8..16]);
+    let halves: [[f32x8; 2]; 4] = from.each(bytemuck::cast);
+    scatter_fours_f32x8(halves.each(|h| h[0]), to, &index[..8]);
+    scatter_fours_f32x8(halves.each(|h| h[1]), to, &index[8..16]);
 }

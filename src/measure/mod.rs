@@ -1,12 +1,6 @@
 //! What is measured of a world: stage times, counts, energy and momentum, penetration, state hash.
 
-mod case;
-#[cfg(feature = "cli")]
-pub mod chaos;
-pub mod elliptic;
-pub mod kepler;
 pub mod momentum;
-pub mod ode;
 mod overlap;
 pub mod residual;
 mod state;
@@ -23,7 +17,6 @@ use crate::lanes::Real;
 use crate::settings::Skip;
 use crate::solve::Traits;
 
-pub use case::case_error;
 pub use overlap::{Outline, Penetration, depths, penetration};
 pub use state::{
     Invariants, attraction_energy, first_non_finite, hash_of, invariants, invariants_of, non_finite_in,

@@ -1,6 +1,7 @@
 //! Clipping: where an incident edge passes over a reference face, in two points without branches.
 
 use super::Found;
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes};
 use crate::vec2::Vec2;
 
@@ -25,7 +26,7 @@ impl<L: Lanes> Found<L> {
     #[inline(always)]
     pub(super) fn unless_apart(mut self, separation: L, margin: L) -> Self {
         let close = separation.le(margin);
-        self.hits = self.hits.map(|hit| hit & close);
+        self.hits = self.hits.each(|hit| hit & close);
         self
     }
 
@@ -65,9 +66,9 @@ pub(super) fn clip<L: Lanes>(
         L::select(upright | clamped.equals(along), end, share)
     };
     let shares = [share(along_p, L::zero()), share(along_q, L::one())];
-    let separations = shares.map(|u| height_p + rise * u);
+    let separations = shares.each(|u| height_p + rise * u);
     let half = L::lit(0.5);
-    let arms: [Vec2<L>; 2] = std::array::from_fn(|k| {
+    let arms: [Vec2<L>; 2] = crate::each::indexed(|k| {
         let along = along_p + span * shares[k];
         let arm = tangent * along + face.normal * (face.offset + separations[k] * half);
         Vec2::select(flipped, arm + from_a, arm)

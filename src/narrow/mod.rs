@@ -16,6 +16,7 @@ mod clip;
 mod polygon_polygon;
 
 use crate::body::{Bodies, Form, fine_difference};
+use crate::each::Each as _;
 
 use crate::column::{Column, PAD};
 use crate::contact::{Code, Manifolds};
@@ -24,12 +25,9 @@ use crate::vec2::{Rot, Vec2};
 
 use polygon_polygon::Hull;
 
-/// Entries of a pose row: what one gather brings of a body.
-const POSE_ENTRIES: &str = "x, y, c, s, extent_x, extent_y, friction, restitution";
-
 /// Where `WIDTH` bodies are and what they are like.
 #[derive(Clone, Copy, Debug)]
-pub struct Pose<L> {
+pub(crate) struct Pose<L> {
     /// Centroid, metres.
     pub x: Vec2<L>,
     /// Attitude.
@@ -43,7 +41,7 @@ pub struct Pose<L> {
 impl<L: Lanes> Pose<L> {
     #[inline(always)]
     fn gather(rows: &[[L::Elem; ROW]], index: &[u32]) -> Self {
-        debug_assert_eq!(POSE_ENTRIES.split(", ").count(), ROW);
+        // The entries of a body's pose row, in order.
         let [x, y, c, s, ex, ey, friction, restitution] = L::gather_rows(rows, index);
         Self { x: Vec2::new(x, y), rot: Rot { c, s }, extent: Vec2::new(ex, ey), friction, restitution }
     }
@@ -51,7 +49,7 @@ impl<L: Lanes> Pose<L> {
 
 /// What a kernel answers for `WIDTH` pairs.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<L: Lanes> {
+pub(crate) struct Found<L: Lanes> {
     /// Unit normal from A to B.
     pub normal: Vec2<L>,
     /// Arms from A's centroid, world axes, metres; midway between the surfaces.
@@ -245,7 +243,7 @@ impl<R: Real> Narrow<R> {
 
     /// Pairs in each bucket, with the bucket's forms.
     pub fn bucket_sizes(&self) -> [(Form, Form, usize); 6] {
-        std::array::from_fn(|k| (BUCKETS[k].0, BUCKETS[k].1, self.manifolds.bucket(k).len()))
+        crate::each::indexed(|k| (BUCKETS[k].0, BUCKETS[k].1, self.manifolds.bucket(k).len()))
     }
 
     /// The places of the pairs last looked at.
@@ -275,17 +273,17 @@ impl<R: Real> Narrow<R> {
             &bodies.friction,
             &bodies.restitution,
         ]
-        .map(Column::lanes::<L>);
+        .each(Column::lanes::<L>);
         let rows = self.poses.rows_mut();
         if self.few {
-            let columns = columns.map(bytemuck::cast_slice::<L, R>);
+            let columns = columns.each(bytemuck::cast_slice::<L, R>);
             for slot in self.wanted.iter().map(|&slot| slot as usize) {
-                rows[slot] = columns.map(|column| column[slot]);
+                rows[slot] = columns.each(|column| column[slot]);
             }
             return;
         }
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            L::store_rows(columns.map(|column| column[at]), &mut rows[at * L::WIDTH..]);
+            L::store_rows(columns.each(|column| column[at]), &mut rows[at * L::WIDTH..]);
         }
     }
 
@@ -293,14 +291,14 @@ impl<R: Real> Narrow<R> {
         let columns = [&bodies.vx, &bodies.vy, &bodies.radius];
         if self.few {
             for slot in self.wanted.iter().map(|&slot| slot as usize) {
-                let [vx, vy, radius] = columns.map(|column| column[slot]);
+                let [vx, vy, radius] = columns.each(|column| column[slot]);
                 self.speeds.fours_mut()[slot] = [vx, vy, radius, R::ZERO];
             }
             return;
         }
-        let columns = columns.map(Column::lanes::<L>);
+        let columns = columns.each(Column::lanes::<L>);
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            let [vx, vy, radius] = columns.map(|column| column[at]);
+            let [vx, vy, radius] = columns.each(|column| column[at]);
             let rows = &mut self.speeds.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
             L::scatter_fours([vx, vy, radius, L::zero()], rows, &IN_ORDER);
         }
@@ -339,7 +337,7 @@ impl<R: Real> Narrow<R> {
     #[cold]
     #[inline(never)]
     fn to_b_finely<L: Lanes<Elem = R>>(&self, centroids: [Vec2<L>; 2], slots: [&[u32]; 2]) -> Vec2<L> {
-        fine_difference(centroids, slots.map(|slots| L::gather_fours(self.fine.fours(), slots)))
+        fine_difference(centroids, slots.each(|slots| L::gather_fours(self.fine.fours(), slots)))
     }
 
     #[inline(always)]
@@ -370,7 +368,7 @@ struct Margin<L> {
 impl<L: Lanes> Margin<L> {
     #[inline(always)]
     fn of(self, speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> L {
-        let [a, b] = slots.map(|slots| L::gather_fours(speeds, slots));
+        let [a, b] = slots.each(|slots| L::gather_fours(speeds, slots));
         let path = Vec2::new(b[0] - a[0], b[1] - a[1]).length_squared().sqrt() * self.ahead;
         self.still + path.min(L::lit(0.5) * a[2].min(b[2]))
     }

@@ -63,6 +63,7 @@ mod sums;
 mod tape;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
@@ -83,6 +84,30 @@ pub use tape::{Tape, save};
 pub const FORMAT: u32 = 1;
 /// In the index: a step without a frame.
 const NO_FRAME: u32 = u32::MAX;
+
+/// The build of the program that records. A library does not know it: programs say it once, by [`set_stamp`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    /// The commit it was built from.
+    pub commit: &'static str,
+    /// The compiler.
+    pub rustc: &'static str,
+    /// Flags given to the compiler.
+    pub flags: &'static str,
+}
+
+impl Default for Stamp {
+    fn default() -> Self {
+        Self { commit: "unknown", rustc: "unknown", flags: "" }
+    }
+}
+
+static STAMP: OnceLock<Stamp> = OnceLock::new();
+
+/// Says which build all recordings of this process are from; only the first call counts.
+pub fn set_stamp(stamp: Stamp) {
+    let _ = STAMP.set(stamp);
+}
 
 /// What was run, with what.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -118,14 +143,15 @@ pub struct RunInfo {
 impl RunInfo {
     /// What a recording of `scene`, begun with the settings of `world`, says of itself.
     pub fn of(scene: &Scene, world: &dyn Simulation, every: u64) -> Self {
+        let stamp = STAMP.get().copied().unwrap_or_default();
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         Self {
             format: FORMAT,
             crate_version: env!("CARGO_PKG_VERSION").to_owned(),
-            commit: env!("LAMINA_COMMIT").to_owned(),
-            rustc: env!("LAMINA_RUSTC").to_owned(),
-            flags: env!("LAMINA_FLAGS").to_owned(),
-            features: crate::build_features().into_iter().map(str::to_owned).collect(),
+            commit: stamp.commit.to_owned(),
+            rustc: stamp.rustc.to_owned(),
+            flags: stamp.flags.to_owned(),
+            features: crate::processor::features().into_iter().map(str::to_owned).collect(),
             scene: scene.name.clone(),
             seed: scene.seed,
             every,

@@ -36,7 +36,7 @@ fn seeded(scene: Scene, seed: u64) -> Scene {
 
 /// `n` dominoes of 1 m, 0.5 m apart on a static floor, the first one turning about its foot fast enough to
 /// fall onto the second.
-pub(super) fn dominoes(n: usize) -> Scene {
+pub fn dominoes(n: usize) -> Scene {
     let half = [0.1, 0.5];
     let length = 0.5 * (n as f64 - 1.0);
     // Its centre has to rise by √0.26 − 0.5 m: from 0.75 rad/s it does.
@@ -54,7 +54,7 @@ pub(super) fn dominoes(n: usize) -> Scene {
 
 /// `n` circles, boxes and polygons in turn falling from a jittered grid, four times as high as wide, onto a
 /// static floor between two static walls.
-pub(super) fn rain(n: usize, seed: u64) -> Scene {
+pub fn rain(n: usize, seed: u64) -> Scene {
     let mut random = Pcg32::seed_from_u64(seed);
     let columns = (n as f64 / 4.0).sqrt().ceil() as usize;
     let half_width = columns as f64 / 2.0 + 0.5;
@@ -93,7 +93,7 @@ fn pebble(random: &mut Pcg32) -> ShapeSpec {
 
 /// `n` boxes of 0.25 m in a square of 20 m whose four kinematic walls turn about its centre by 25° a
 /// second.
-pub(super) fn tumbler(n: usize) -> Scene {
+pub fn tumbler(n: usize) -> Scene {
     let half = (10.0 * (n as f64 / REFERENCE_BODIES).sqrt()).max(1.0);
     let omega = 25f64.to_radians();
     let walls = enclosure(half).map(|wall| wall.about([0.0; 2]).moving([0.0; 2], omega));
@@ -111,7 +111,7 @@ pub(super) fn tumbler(n: usize) -> Scene {
 
 /// `n` circles, boxes and elongated octagons in turn in a static square of 40 m, stirred by a kinematic bar
 /// nine tenths as long that turns about its centre by 1 rad a second.
-pub(super) fn spinner(n: usize, seed: u64) -> Scene {
+pub fn spinner(n: usize, seed: u64) -> Scene {
     let mut random = Pcg32::seed_from_u64(seed);
     let half = (20.0 * (n as f64 / REFERENCE_BODIES).sqrt()).max(3.0);
     let bar =
@@ -149,7 +149,7 @@ const CAPSULE: [[f64; 2]; 8] = [
 
 /// A shape flying to the right from `height` on the y axis, and its own static wall of 0.1 m, which lies in
 /// the middle between two places where steps of 1/60 s would set the shape down.
-pub(super) fn shot(shape: ShapeSpec, height: f64, speed: f64) -> [BodySpec; 2] {
+pub fn shot(shape: ShapeSpec, height: f64, speed: f64) -> [BodySpec; 2] {
     let stride = speed / 60.0;
     let strides = (8.0 / stride).floor() + 0.5;
     let wall = block([0.05, 2.0], [strides * stride, height]);
@@ -157,13 +157,13 @@ pub(super) fn shot(shape: ShapeSpec, height: f64, speed: f64) -> [BodySpec; 2] {
 }
 
 /// A circle of 0.1 m at 200 m/s against a static wall 0.1 m thick, without gravity.
-pub(super) fn bullet() -> Scene {
+pub fn bullet() -> Scene {
     let bodies = shot(ShapeSpec::Circle(0.1), 0.0, 200.0).to_vec();
     scene("a fast circle against a thin wall", bodies, Forces::default(), 60)
 }
 
 /// A wedge and a sliver, point first, and a plate broadside.
-pub(super) fn projectiles() -> [ShapeSpec; 3] {
+pub fn projectiles() -> [ShapeSpec; 3] {
     let wedge = ShapeSpec::Polygon(vec![[0.2, 0.0], [-0.1, 0.1], [-0.1, -0.1]]);
     let sliver = ShapeSpec::Polygon(vec![[0.4, 0.0], [-0.2, 0.01], [-0.2, -0.01]]);
     [wedge, sliver, ShapeSpec::Box([0.01, 0.5])]
@@ -171,7 +171,7 @@ pub(super) fn projectiles() -> [ShapeSpec; 3] {
 
 /// A wedge at 200 m/s, a sliver point first and a thin box broadside at 100 m/s, each against its own
 /// static wall 0.1 m thick, without gravity: 6 bodies.
-pub(super) fn bullets() -> Scene {
+pub fn bullets() -> Scene {
     let [wedge, sliver, plate] = projectiles();
     let shots = [shot(wedge, 0.0, 200.0), shot(sliver, 10.0, 100.0), shot(plate, 20.0, 100.0)];
     scene("fast wedge, sliver and plate against thin walls", shots.concat(), Forces::default(), 60)
@@ -179,7 +179,7 @@ pub(super) fn bullets() -> Scene {
 
 /// 625 discs of 0.39 m on a grid of 0.8 m, filling a static square of 20 m, with velocities up to 0.5 m/s
 /// along either axis and without gravity: 629 bodies.
-pub(super) fn circles_confined(seed: u64) -> Scene {
+pub fn circles_confined(seed: u64) -> Scene {
     let mut random = Pcg32::seed_from_u64(seed);
     let mut bodies = enclosure(10.0).to_vec();
     bodies.extend((0..625).map(|k| {

@@ -47,7 +47,7 @@ const BRIDGE_ARC_RAD: f64 = 0.8;
 ///
 /// Bodies: the left disc, the planks from left to right, the right disc; the k-th joint is between the k-th body and
 /// the next.
-pub(super) fn bridge(n: usize) -> Scene {
+pub fn bridge(n: usize) -> Scene {
     let sector = BRIDGE_ARC_RAD / n as f64;
     let radius = PITCH_M / (2.0 * Rot::from_angle(sector / 2.0).s);
     // About the lowest point of the circle, from left to right.
@@ -78,7 +78,7 @@ pub(super) fn bridge(n: usize) -> Scene {
 
 /// `side` × `side` discs of 0.4 m, 1 m apart, row by row from the upper left, each hinged to its right and its lower
 /// neighbour half way between; the upper corners are static.
-pub(super) fn joint_grid(side: usize) -> Scene {
+pub fn joint_grid(side: usize) -> Scene {
     let at = |k: usize| [(k % side) as f64, -((k / side) as f64)];
     let bodies = (0..side * side).map(|k| {
         let body = disc(0.4, at(k));
@@ -100,7 +100,7 @@ pub(super) fn joint_grid(side: usize) -> Scene {
 }
 
 /// A disc of 1 kg on a massless rod of 1 m, let go level; the rod ends in its centre, so that it does not turn.
-pub(super) fn pendulum() -> Scene {
+pub fn pendulum() -> Scene {
     let bodies = vec![disc(PIN_RADIUS_M, [0.0; 2]).fixed(), disc(0.1, [1.0, 0.0]).mass(1.0)];
     let joints = vec![JointSpec::new(0, 1, JointKind::rod())];
     joined(scene("a disc on a rod", bodies, Forces::gravity(), 600), joints)

@@ -2,20 +2,17 @@
 //!
 //! One description serves every engine (ours, the thesis baseline, later the peers), the benches, the
 //! tests, the program and the viewer. [`mixes`] and [`named`] build them by name and seed,
-//! [`file`](mod@file) reads them from TOML; [`cases`] knows where the bodies of some of them must be, [`smooth`] holds
-//! those of table A, [`contact`] those of table B, [`stress`] those of table T.
+//! [`file`](mod@file) reads them from TOML. Scenes with a reference beside them, the cases of accuracy and stability, are
+//! the laboratory's (package `lamina`, room `cases`); it finds its own by the same [`by_name_in`].
 
-pub mod cases;
-pub mod contact;
-mod driven;
+pub mod basics;
+pub mod driven;
 pub mod file;
 pub mod jointed;
 pub mod mixes;
 pub mod named;
 pub mod similar;
-pub mod smooth;
-mod stacks;
-pub mod stress;
+pub mod stacks;
 
 use std::path::Path;
 
@@ -27,7 +24,7 @@ use crate::joint::JointSpec;
 use crate::pair::{self, Pair};
 use crate::shape::{Shape, ShapeError};
 
-pub use named::{SCENES, SceneInfo, by_name};
+pub use named::{SCENES, SceneInfo, by_name, by_name_in};
 
 use crate::settings::Settings;
 
@@ -250,12 +247,25 @@ impl Scene {
 /// # Errors
 /// Those of [`by_name`] and [`file::read`]; a number of bodies for a file, which has the bodies it lists.
 pub fn load(given: &str, bodies: Option<usize>, seed: u64) -> Result<(Scene, Settings), SceneError> {
+    load_in(SCENES, given, bodies, seed)
+}
+
+/// As [`load`], with the scenes of another table.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_in(
+    scenes: &[SceneInfo],
+    given: &str,
+    bodies: Option<usize>,
+    seed: u64,
+) -> Result<(Scene, Settings), SceneError> {
     let is_file = Path::new(given).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     match bodies {
         None if is_file => file::read(given),
         Some(_) if is_file => Err(SceneError::BodiesOfFile(given.to_owned())),
         _ => {
-            let scene = by_name(given, bodies, seed)?;
+            let scene = by_name_in(scenes, given, bodies, seed)?;
             let settings = Settings { dt_secs: scene.dt_secs, ..Settings::default() };
             Ok((scene, settings))
         }

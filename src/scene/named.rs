@@ -2,7 +2,7 @@
 
 use super::mixes::{Mix, determinism, mix};
 use super::{BodySpec, Scene, SceneError, ShapeSpec};
-use super::{cases, contact, driven, jointed, smooth, stacks, stress};
+use super::{basics, driven, jointed, stacks};
 use crate::force::Forces;
 
 /// What a scene's parameter after the slash or `--bodies` means.
@@ -88,16 +88,12 @@ pub struct SceneInfo {
     pub default: usize,
     /// What it shows.
     pub about: &'static str,
-    pub(super) build: fn(usize, u64) -> Scene,
+    /// Builds it from its parameter and a seed.
+    pub build: fn(usize, u64) -> Scene,
 }
 
-/// Every scene of the library.
-pub const SCENES: &[SceneInfo] = &joined::<
-    { NAMED.len() + smooth::SCENES.len() + contact::SCENES.len() + stress::SCENES.len() },
->([NAMED, smooth::SCENES, contact::SCENES, stress::SCENES]);
-
 /// A scene of which nothing can be chosen.
-pub(super) const fn fixed(
+pub const fn fixed(
     name: &'static str,
     about: &'static str,
     build: fn(usize, u64) -> Scene,
@@ -106,22 +102,8 @@ pub(super) const fn fixed(
     SceneInfo { name, takes: Takes::Nothing, default: bodies, about, build }
 }
 
-/// Four tables as one.
-const fn joined<const N: usize>(tables: [&[SceneInfo]; 4]) -> [SceneInfo; N] {
-    let mut all = [tables[0][0]; N];
-    let (mut table, mut before, mut k) = (0, 0, 0);
-    while k < N {
-        if k - before == tables[table].len() {
-            before = k;
-            table += 1;
-        }
-        all[k] = tables[table][k - before];
-        k += 1;
-    }
-    all
-}
-
-const NAMED: &[SceneInfo] = &[
+/// Every scene of the engine.
+pub const SCENES: &[SceneInfo] = &[
     SceneInfo {
         name: "circles",
         takes: Takes::Bodies,
@@ -316,49 +298,49 @@ const NAMED: &[SceneInfo] = &[
         takes: Takes::Nothing,
         default: 3,
         about: "bars at 1, 10 and 100 rad/s, free: their attitudes are known",
-        build: |_, _| cases::spin(),
+        build: |_, _| basics::spin(),
     },
     SceneInfo {
         name: "slide",
         takes: Takes::Nothing,
         default: 1,
         about: "a block at 5 m/s slides to a stop on a level floor",
-        build: |_, _| cases::slide(),
+        build: |_, _| basics::slide(),
     },
     SceneInfo {
         name: "incline",
         takes: Takes::Nothing,
         default: 1,
         about: "a block slides down a slope of 30°",
-        build: |_, _| cases::incline(),
+        build: |_, _| basics::incline(),
     },
     SceneInfo {
         name: "roll",
         takes: Takes::Nothing,
         default: 1,
         about: "a disc rolls down a slope of 20°",
-        build: |_, _| cases::roll(),
+        build: |_, _| basics::roll(),
     },
     SceneInfo {
         name: "slide_to_roll",
         takes: Takes::Nothing,
         default: 1,
         about: "a disc at 6 m/s slides until it rolls",
-        build: |_, _| cases::slide_to_roll(),
+        build: |_, _| basics::slide_to_roll(),
     },
     SceneInfo {
         name: "bounce",
         takes: Takes::Nothing,
         default: 1,
         about: "a disc dropped from 2 m bounces four times",
-        build: |_, _| cases::bounce(),
+        build: |_, _| basics::bounce(),
     },
     SceneInfo {
         name: "rod_hit",
         takes: Takes::Nothing,
         default: 2,
         about: "a disc hits a free rod off its middle",
-        build: |_, _| cases::rod_hit(),
+        build: |_, _| basics::rod_hit(),
     },
 ];
 
@@ -371,13 +353,26 @@ pub const MAX_BODIES: usize = 1_000_000;
 /// An unknown name, a parameter that is not a number from 1 to [`Takes::most`], a parameter for a scene
 /// that takes none.
 pub fn by_name(name: &str, bodies: Option<usize>, seed: u64) -> Result<Scene, SceneError> {
+    by_name_in(SCENES, name, bodies, seed)
+}
+
+/// As [`by_name`], among the scenes of another table.
+///
+/// # Errors
+/// Those of [`by_name`].
+pub fn by_name_in(
+    scenes: &[SceneInfo],
+    name: &str,
+    bodies: Option<usize>,
+    seed: u64,
+) -> Result<Scene, SceneError> {
     let (base, parameter) = match name.split_once('/') {
         Some((base, parameter)) => (base, Some(parameter)),
         None => (name, None),
     };
-    let info = SCENES.iter().find(|s| s.name == base).ok_or_else(|| SceneError::UnknownScene {
+    let info = scenes.iter().find(|s| s.name == base).ok_or_else(|| SceneError::UnknownScene {
         name: name.to_owned(),
-        choices: SCENES.iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
+        choices: scenes.iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
     })?;
     let [takes, problem] = info.takes.wanted();
     let good = |n: &usize| info.takes != Takes::Nothing && (1..=info.takes.most()).contains(n);
@@ -399,7 +394,7 @@ pub fn by_name(name: &str, bodies: Option<usize>, seed: u64) -> Result<Scene, Sc
 }
 
 /// A scene with steps of 1/60 s; its name comes from the table.
-pub(super) fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u64) -> Scene {
+pub fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u64) -> Scene {
     Scene {
         name: String::new(),
         about: about.to_owned(),

@@ -37,14 +37,14 @@ fn rows(base: usize, foot: [f64; 2]) -> impl Iterator<Item = BodySpec> {
 }
 
 /// One pyramid on a wide floor: 1 static body, `base`·(`base` + 1)/2 boxes.
-pub(super) fn pyramid(base: usize) -> Scene {
+pub fn pyramid(base: usize) -> Scene {
     let ground = floor(0.0, 0.0, 0.5 * base as f64 * (1.0 + GAP_M) + 20.0, 0.6);
     let bodies = std::iter::once(ground).chain(rows(base, [0.0; 2])).collect();
     scene("a pyramid of boxes", bodies, Forces::gravity(), 600)
 }
 
 /// Small pyramids side by side on storeys of ⌈√n⌉ each: a static floor per storey, 55 boxes per pyramid.
-pub(super) fn pyramids(n: usize) -> Scene {
+pub fn pyramids(n: usize) -> Scene {
     let across = (n as f64).sqrt().ceil() as usize;
     let pitch = 16.0;
     let storeys = n.div_ceil(across);
@@ -56,7 +56,7 @@ pub(super) fn pyramids(n: usize) -> Scene {
 }
 
 /// `n` boxes of 1 m on each other, 1 cm to the right and to the left in turn, on a static floor.
-pub(super) fn columns(n: usize) -> Scene {
+pub fn columns(n: usize) -> Scene {
     let boxes = (0..n).map(|k| {
         let x = if k % 2 == 0 { 0.01 } else { -0.01 };
         brick([0.5, 0.5], [x, 0.5 + k as f64], 0.5)
@@ -66,7 +66,7 @@ pub(super) fn columns(n: usize) -> Scene {
 }
 
 /// A box of 1 m and 1 kg on a static floor, and on it the same box with `ratio` kg.
-pub(super) fn heavy(ratio: usize) -> Scene {
+pub fn heavy(ratio: usize) -> Scene {
     let light = brick([0.5, 0.5], [0.0, 0.5], 0.6);
     let heavy = brick([0.5, 0.5], [0.0, 1.5], 0.6).mass(ratio as f64);
     let bodies = vec![floor(0.0, 0.0, 20.0, 0.6), light, heavy];
@@ -74,7 +74,7 @@ pub(super) fn heavy(ratio: usize) -> Scene {
 }
 
 /// Boxes of 1, 2, 4, 8, 16 and 32 m and of density 1, the smallest at the bottom, on a static floor.
-pub(super) fn sizes() -> Scene {
+pub fn sizes() -> Scene {
     let boxes = (0..6).map(|k| {
         let size = f64::from(1 << k);
         // What lies below is 1 + 2 + … = size − 1 high.
@@ -85,7 +85,7 @@ pub(super) fn sizes() -> Scene {
 }
 
 /// A box of 20 m and 400 kg on two of 1 m and 1 kg, on a static floor.
-pub(super) fn two_feet() -> Scene {
+pub fn two_feet() -> Scene {
     let foot = |x| brick([0.5, 0.5], [x, 0.5], 0.6);
     let bodies =
         vec![floor(0.0, 0.0, 40.0, 0.6), foot(-9.0), foot(9.0), brick([10.0, 10.0], [0.0, 11.0], 0.6)];
@@ -100,7 +100,7 @@ const VOUSSOIRS: usize = 17;
 
 /// A semicircular arch of 17 wedges with radial joints on two static springers, four boxes on its
 /// keystone, a static floor 1 m below: 24 bodies.
-pub(super) fn arch() -> Scene {
+pub fn arch() -> Scene {
     let (inner, outer) = (ARCH_RADIUS_M - ARCH_THICKNESS_M / 2.0, ARCH_RADIUS_M + ARCH_THICKNESS_M / 2.0);
     let springer = |side: f64| {
         let half = [ARCH_THICKNESS_M, 0.5];
@@ -136,7 +136,7 @@ const CARD_REACH_M: f64 = 0.02;
 /// static floor; `levels`·(`levels` + 1) cards lean, `levels`·(`levels` − 1)/2 lie.
 ///
 /// Lying cards meet end to end over the pairs' tops, each resting on the nearer card of either pair.
-pub(super) fn cards(levels: usize) -> Scene {
+pub fn cards(levels: usize) -> Scene {
     let [half_length, half_thickness] = CARD_HALF;
     let card = |half, position| brick(half, position, 0.7);
     let lean_rad = 25f64.to_radians();

@@ -44,6 +44,7 @@ mod batch;
 use super::constraint::inverse;
 use crate::column::Column;
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::integrate::Motion;
 use crate::lanes::{Lanes, ROW, Real};
 use crate::vec2::Vec2;
@@ -294,7 +295,7 @@ impl<L: Lanes> Avbd<L> {
             // Lower triangle of H: xx, xy, yy, xθ, yθ, θθ.
             let mut h = [mass, L::zero(), mass, L::zero(), L::zero(), inertia];
             let mut pushed = L::zero();
-            let to_y: [L; 3] = std::array::from_fn(|k| y[k] - x[k]);
+            let to_y: [L; 3] = crate::each::indexed(|k| y[k] - x[k]);
             let mut f = [mass * (y[0] - x[0]), mass * (y[1] - x[1]), inertia * (y[2] - x[2])];
             for visit in batch.start..batch.end {
                 let lanes = visit * L::WIDTH..(visit + 1) * L::WIDTH;
@@ -303,8 +304,8 @@ impl<L: Lanes> Avbd<L> {
                 let side = self.side[visit];
                 let is_b = L::zero().lt(side);
                 let pick = |a: L, b: L| L::select(is_b, b, a);
-                let a: [L; 4] = std::array::from_fn(|k| pick(x[k], theirs[k]));
-                let b: [L; 4] = std::array::from_fn(|k| pick(theirs[k], x[k]));
+                let a: [L; 4] = crate::each::indexed(|k| pick(x[k], theirs[k]));
+                let b: [L; 4] = crate::each::indexed(|k| pick(theirs[k], x[k]));
                 let c = seen.violation(&a, &b, keep);
                 let (force, holds) = seen.forces(&c);
                 pushed = pushed + (force[0] + force[1]);
@@ -343,14 +344,14 @@ impl<L: Lanes> Avbd<L> {
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
             let seen = Seen::<L>::gather(manifolds, place, pace);
-            let moved = [a, b].map(|slots| L::gather_fours(motion.moved.fours(), slots));
+            let moved = [a, b].each(|slots| L::gather_fours(motion.moved.fours(), slots));
             let c = seen.violation(&moved[0], &moved[1], keep);
             let (force, counts) = seen.forces(&c);
             let unit = stiffness(manifolds, motion, place, [a, b], pace);
             let miss = (c[0].abs() * counts[0]).max(c[1].abs() * counts[1]).max(c[2].abs() * counts[2]);
             let k = seen.dual[3] + L::lit(GROWTH) * unit * (miss * pace.per_length);
             let k = k.min(L::lit(MOST) * unit);
-            let [j0, j1, jt] = force.map(|force| force * pace.impulse);
+            let [j0, j1, jt] = force.each(|force| force * pace.impulse);
             L::scatter_fours([j0, j1, jt, k], manifolds.impulses_mut(), place);
         }
     }
@@ -375,7 +376,7 @@ impl<L: Lanes> Avbd<L> {
             let (x, ahead) =
                 (L::gather_fours(motion.moved.fours(), slots), L::gather_fours(self.ahead.fours(), slots));
             let pushed = L::zero().lt(x[3]);
-            let moved = std::array::from_fn(|k| L::select(pushed, x[k], ahead[k]));
+            let moved = crate::each::indexed(|k| L::select(pushed, x[k], ahead[k]));
             L::scatter_fours(moved, motion.moved.fours_mut(), slots);
         }
     }
@@ -386,7 +387,7 @@ impl<L: Lanes> Avbd<L> {
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
             let seen = Seen::<L>::gather(manifolds, place, pace);
-            let moved = [a, b].map(|slots| L::gather_fours(motion.moved.fours(), slots));
+            let moved = [a, b].each(|slots| L::gather_fours(motion.moved.fours(), slots));
             let change = seen.change(&moved[0], &moved[1]);
             let [s0, s1, friction, restitution] = L::gather_fours(manifolds.gaps(), place);
             let gaps = [s0 + change[0], s1 + change[1] * seen.exists, friction, restitution];
@@ -405,7 +406,7 @@ fn stiffness<L: Lanes>(
     pace: &Pace<L>,
 ) -> L {
     let row: [L; ROW] = L::gather_rows(manifolds.geometry(), places);
-    let [ma, mb] = ends.map(|slots| L::gather_fours(motion.matter.fours(), slots));
+    let [ma, mb] = ends.each(|slots| L::gather_fours(motion.matter.fours(), slots));
     let (normal, arm) = (Vec2::new(row[0], row[1]), Vec2::new(row[2], row[3]));
     let (la, lb) = (arm.cross(normal), (arm - Vec2::new(row[6], row[7])).cross(normal));
     pace.per_h2 * inverse((ma[0] + mb[0]) + (ma[1] * (la * la) + mb[1] * (lb * lb)))

@@ -4,6 +4,7 @@
 //! substeps. Together a symmetric column stays symmetric to the bit and 80 boxes stand at 8, for a tenth more time.
 
 use super::constraint::{Constraint, Normals, Side};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// K₀₁: what a unit impulse at one point changes the normal velocity of the other by; 0 for one point.
@@ -27,7 +28,7 @@ pub(super) fn answer<L: Lanes, const POINTS: usize>(
     if POINTS == 1 {
         return held;
     }
-    std::array::from_fn(|k| held[k] + cross * (masses[POINTS - 1 - k] * held[POINTS - 1 - k]))
+    crate::each::indexed(|k| held[k] + cross * (masses[POINTS - 1 - k] * held[POINTS - 1 - k]))
 }
 
 /// Impulses over their masses with which points that carry something neither close nor part; `per_sec` is 1/h.
@@ -38,10 +39,10 @@ pub(super) fn relaxed<L: Lanes, const POINTS: usize>(
     per_sec: L,
 ) -> [L; POINTS] {
     let (zero, cross) = (L::zero(), cross(c, normals));
-    let masses = c.points.map(|point| point.mass);
-    let held = c.points.map(|point| point.held);
+    let masses = c.points.each(|point| point.mass);
+    let held = c.points.each(|point| point.held);
     let answer = answer(cross, masses, held);
-    let wanted: [L; POINTS] = std::array::from_fn(|k| {
+    let wanted: [L; POINTS] = crate::each::indexed(|k| {
         let point = &c.points[k];
         // A point that carried nothing may go on closing its gap.
         let closing = zero.max(point.separation) * per_sec;
@@ -58,7 +59,7 @@ pub(super) fn part<L: Lanes, const POINTS: usize>(
     entered: [L; POINTS],
     [a, b]: [&mut Side<L>; 2],
 ) {
-    let masses = c.points.map(|point| point.mass);
+    let masses = c.points.each(|point| point.mass);
     let parted = non_negative(cross(c, &ways), masses, entered);
     for k in 0..POINTS {
         ways.push(c, k, masses[k] * parted[k]);
@@ -79,7 +80,7 @@ pub(super) fn non_negative<L: Lanes, const POINTS: usize>(
     b: [L; POINTS],
 ) -> [L; POINTS] {
     let zero = L::zero();
-    let alone = b.map(|b| zero.max(-b));
+    let alone = b.each(|b| zero.max(-b));
     if POINTS == 1 {
         return alone;
     }
@@ -93,5 +94,5 @@ pub(super) fn non_negative<L: Lanes, const POINTS: usize>(
     let use_both = exists & least.lt(determinant) & zero.le(both[0]) & zero.le(both[1]);
     let use_first = !exists | zero.le(by_first * alone[0] + b[last]);
     let single = [L::select(use_first, alone[0], zero), L::select(use_first, zero, alone[last])];
-    std::array::from_fn(|k| L::select(use_both, both[k], single[k]))
+    crate::each::indexed(|k| L::select(use_both, both[k], single[k]))
 }

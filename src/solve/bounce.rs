@@ -19,7 +19,7 @@ const HOPS: usize = 16;
 
 /// How a point will part that bounces within the step.
 #[derive(Clone, Copy, Debug)]
-pub struct Parting<L> {
+pub(crate) struct Parting<L> {
     /// Speed right after it has met, m/s; 0 where it does not bounce.
     begins: L,
     /// As the step ends, m/s.
@@ -34,7 +34,7 @@ pub struct Parting<L> {
 
 /// What was noted at a step's beginning, per batch and point.
 #[derive(Clone, Debug)]
-pub struct Bounces<L> {
+pub(crate) struct Bounces<L> {
     two: Vec<[Parting<L>; 2]>,
     one: Vec<[Parting<L>; 1]>,
 }
@@ -47,7 +47,7 @@ impl<L> Default for Bounces<L> {
 
 impl<L: Lanes> Bounces<L> {
     /// Makes room for so many batches.
-    pub fn resize(&mut self, [two, one]: [usize; 2]) {
+    pub(crate) fn resize(&mut self, [two, one]: [usize; 2]) {
         let zero = L::zero();
         let none = Parting { begins: zero, speed: zero, gap: zero, since: zero, borne: zero };
         self.two.resize(two, [none; 2]);
@@ -62,7 +62,7 @@ impl<L: Lanes> Bounces<L> {
 
 /// Notes how each point will part that approaches faster than the threshold and than its load of the last step explains.
 #[derive(Debug)]
-pub struct NoteApproach<'a, L: Lanes> {
+pub(crate) struct NoteApproach<'a, L: Lanes> {
     /// Velocities at the step's beginning per slot.
     pub rows: &'a [[L::Elem; 4]],
     /// Accelerations at the step's beginning per slot: x, y (m/s²), angular.
@@ -135,7 +135,7 @@ fn parting<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Pa
 
 /// The pass that ends a step: points that bounce and were stopped part as noted.
 #[derive(Debug)]
-pub struct Bounce<'a, L: Lanes> {
+pub(crate) struct Bounce<'a, L: Lanes> {
     /// Velocities per slot.
     pub rows: &'a mut [[L::Elem; 4]],
     /// What bounces displace, per slot: x, y, angle, –; zeros before the pass.
@@ -164,14 +164,14 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
         let mut ways = Normals::begin(c, &to_a, &to_b);
         let mut normals = Normals::begin(c, &a, &b);
         let gaps = gaps(c, &ends, self.moved);
-        let gaps: [L; POINTS] = std::array::from_fn(|k| gaps[k] + ways.velocity(&c.points[k]));
-        let bounces: [L::Mask; POINTS] = std::array::from_fn(|k| {
+        let gaps: [L; POINTS] = crate::each::indexed(|k| gaps[k] + ways.velocity(&c.points[k]));
+        let bounces: [L::Mask; POINTS] = crate::each::indexed(|k| {
             // One that nothing has stopped yet will be met in the next step.
             let stopped = (L::lit(-0.5) * noted[k].begins).le(normals.velocity(&c.points[k]));
             zero.lt(noted[k].begins) & gaps[k].le(self.touch) & stopped
         });
         let where_bounces = |of: &dyn Fn(usize) -> L| -> [L; POINTS] {
-            std::array::from_fn(|k| L::select(bounces[k], of(k), zero))
+            crate::each::indexed(|k| L::select(bounces[k], of(k), zero))
         };
         let masses = where_bounces(&|k| c.points[k].mass);
         let cross = cross(c, &normals);
@@ -206,7 +206,7 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
 
 /// The pass after [`Bounce`]: what bounces displaced into others, or deeper into them, is moved out again.
 #[derive(Debug)]
-pub struct Part<'a, L: Lanes> {
+pub(crate) struct Part<'a, L: Lanes> {
     /// Velocities per slot, for their inverse masses.
     pub rows: &'a [[L::Elem; 4]],
     /// What bounces displace, per slot.
@@ -225,7 +225,7 @@ impl<L: Lanes> Visit<L> for Part<'_, L> {
         let ways = Normals::begin(c, &to_a, &to_b);
         let zero = L::zero();
         let before = gaps(c, &ends, self.moved);
-        let entered: [L; POINTS] = std::array::from_fn(|k| {
+        let entered: [L; POINTS] = crate::each::indexed(|k| {
             let way = ways.velocity(&c.points[k]);
             // What overlapped before may, as much.
             L::select(way.lt(zero), zero.min(way + zero.max(before[k])), zero)
@@ -247,5 +247,5 @@ pub(super) fn gaps<L: Lanes, const POINTS: usize>(
     moved: Option<&[[L::Elem; 4]]>,
 ) -> [L; POINTS] {
     let change = moved.map_or([L::zero(); POINTS], |moved| c.change_by(moved, ends));
-    std::array::from_fn(|k| c.points[k].separation + change[k])
+    crate::each::indexed(|k| c.points[k].separation + change[k])
 }

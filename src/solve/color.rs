@@ -9,11 +9,12 @@ use std::ops::Range;
 
 use crate::body::Bodies;
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::scene::BodyKind;
 
 /// Colours a body can take part in: one bit each.
-pub const COLORS: usize = 64;
+pub(crate) const COLORS: usize = 64;
 /// The lanes a colour's last batch is counted with when one-point contacts may join it: the same at every
 /// width, so that width never decides which kernel solves a contact.
 const JOIN: usize = 8;
@@ -45,7 +46,7 @@ impl Coloring {
         self.used.clear();
         self.used.resize(bodies.len(), 0);
         let bits = |at: usize, manifolds: &Manifolds<R>| {
-            manifolds.slots(at).map(|slot| (slot as usize, bodies.kind(slot as usize) == BodyKind::Dynamic))
+            manifolds.slots(at).each(|slot| (slot as usize, bodies.kind(slot as usize) == BodyKind::Dynamic))
         };
         for k in 0..manifolds.len() {
             let at = manifolds.touching()[k] as usize;

@@ -9,6 +9,7 @@
 //! Kept out: masses (they come with the bodies' rows), arms (levers serve), whatever only some solver wants.
 
 use super::stream::Ends;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::vec2::Vec2;
 
@@ -122,12 +123,12 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         let [[ma, ia], [mb, ib]] = parts.matter;
         let levers = |arm: Vec2<L>, axis: Vec2<L>| [arm.cross(axis), (arm - to_b).cross(axis)];
         let response = |[la, lb]: [L; 2]| (ma + mb) + (ia * (la * la) + ib * (lb * lb));
-        let points = std::array::from_fn(|k| {
+        let points = crate::each::indexed(|k| {
             let levers = levers(arms[k], normal);
             let response = response(levers);
             let exists = |value: L| if k == 0 { value } else { L::select(parts.two_points, value, zero) };
             Point {
-                levers: levers.map(exists),
+                levers: levers.each(exists),
                 mass: exists(inverse(response)),
                 separation: exists(parts.gap[k]),
                 held: parts.impulse[k] * response,
@@ -162,7 +163,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     /// of their tangents, which today's gap would move: which lanes share a batch must not matter.
     pub fn keep_held(&mut self, old: &Self, fresh: u32) {
         let lanes: [L::Elem; 16] =
-            std::array::from_fn(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
+            crate::each::indexed(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
         let fresh = L::zero().lt(L::load(&lanes));
         for (point, old) in self.points.iter_mut().zip(&old.points) {
             point.held = L::select(fresh, point.held, old.held);
@@ -183,7 +184,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     #[inline(always)]
     pub fn change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
         let along = Vec2::new(b[0] - a[0], b[1] - a[1]).dot(self.normal);
-        std::array::from_fn(|k| {
+        crate::each::indexed(|k| {
             let [la, lb] = self.points[k].levers;
             along + (b[2] * lb - a[2] * la)
         })

@@ -10,6 +10,7 @@ use super::block::part;
 use super::bounce::gaps;
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes};
 
 /// Overlaps over this share of the scene's median radius are deep, where bodies have just come or changed. What sinks into
@@ -55,7 +56,7 @@ impl<L: Lanes> Visit<L> for PartDeep<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let zero = L::zero();
-        let over = gaps(c, &ends, self.moved).map(|gap| zero.min(gap + self.deep));
+        let over = gaps(c, &ends, self.moved).each(|gap| zero.min(gap + self.deep));
         let is_deep = |k: usize| over[k].lt(zero) & zero.lt(c.points[k].mass);
         if !(0..POINTS).any(|k| is_deep(k).any()) {
             return;
@@ -66,7 +67,7 @@ impl<L: Lanes> Visit<L> for PartDeep<'_, L> {
         };
         let (mut to_a, mut to_b) = (side(ends.a), side(ends.b));
         let ways = Normals::begin(c, &to_a, &to_b);
-        let entered: [L; POINTS] = std::array::from_fn(|k| {
+        let entered: [L; POINTS] = crate::each::indexed(|k| {
             let owed = over[k].max(-self.most) + ways.velocity(&c.points[k]);
             L::select(is_deep(k), zero.min(owed), zero)
         });

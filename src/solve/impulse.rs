@@ -15,6 +15,7 @@ use super::Task;
 use super::block::{cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
@@ -57,7 +58,7 @@ impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_
             c.follow(moved, &ends);
         }
         let mut normals = Normals::begin(c, &a, &b);
-        let approaches: [L; POINTS] = std::array::from_fn(|k| {
+        let approaches: [L; POINTS] = crate::each::indexed(|k| {
             let approach = normals.velocity(&c.points[k]);
             if BOUNCE {
                 let bounces = approach.lt(-self.threshold);
@@ -66,7 +67,7 @@ impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_
                 approach
             }
         });
-        let masses = c.points.map(|point| point.mass);
+        let masses = c.points.each(|point| point.mass);
         let stopped = non_negative(cross(c, &normals), masses, approaches);
         for k in 0..POINTS {
             normals.push(c, k, masses[k] * stopped[k]);
@@ -102,7 +103,7 @@ impl<L: Lanes> Visit<L> for Correct<'_, L> {
         };
         let (mut a, mut b) = (side(ends.a), side(ends.b));
         let normals = Normals::begin(c, &a, &b);
-        let sinking: [L; POINTS] = std::array::from_fn(|k| {
+        let sinking: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let excess = -(point.separation + normals.velocity(point)) - self.slop;
             -(L::zero().max(excess) * L::lit(CORRECTION_SHARE))

@@ -49,17 +49,18 @@ use super::constraint::Side;
 use super::soft;
 use crate::body::{Bodies, fine_difference};
 use crate::column::Column;
+use crate::each::Each as _;
 use crate::joint::{Held, Joint};
 use crate::lanes::{Lanes, Real};
 use crate::vec2::{Rot, Vec2, sin_cos};
 use row::Numbers;
 
-pub use stream::{JointStream, Sources};
+pub(crate) use stream::{JointStream, Sources};
 
 /// Stiffness of rigid joints: hz·h, below what chains of any length bear.
-pub const HERTZ_TIMES_SUBSTEP: f64 = 0.22;
+pub(crate) const HERTZ_TIMES_SUBSTEP: f64 = 0.22;
 /// Damping ratio of rigid joints.
-pub const DAMPING: f64 = 5.0;
+pub(crate) const DAMPING: f64 = 5.0;
 /// Of solvers with one pass: the share of an error that a visit takes back, and the share of an impulse that it
 /// leaks. More of the first than eight visits leak, and chains blow up.
 const BAUMGARTE: f64 = 0.1;
@@ -158,7 +159,7 @@ struct Pose<L> {
 impl<L: Lanes> Pose<L> {
     /// Those of A and B; where positions are finer than their columns, seen from A.
     fn gather(bodies: &Bodies<L::Elem>, slots: [&[u32]; 2]) -> [Self; 2] {
-        let mut poses = slots.map(|slots| {
+        let mut poses = slots.each(|slots| {
             let of = |column: &Column<L::Elem>| lanes::<L, _>(slots, |&slot| column[slot as usize]);
             Self {
                 at: Vec2::new(of(&bodies.x), of(&bodies.y)),
@@ -166,7 +167,7 @@ impl<L: Lanes> Pose<L> {
             }
         });
         if let Some(rows) = &bodies.fine {
-            let rest = slots.map(|slots| {
+            let rest = slots.each(|slots| {
                 let of = |k: usize| lanes::<L, _>(slots, |&slot| rows.fours()[slot as usize][k]);
                 [of(0), of(1), L::zero(), L::zero()]
             });

@@ -35,19 +35,19 @@
 
 mod avbd;
 mod block;
-pub mod bounce;
-pub mod color;
-pub mod constraint;
+pub(crate) mod bounce;
+pub(crate) mod color;
+pub(crate) mod constraint;
 mod deep;
 mod impulse;
-pub mod joint;
-pub mod pace;
+pub(crate) mod joint;
+pub(crate) mod pace;
 mod pgs;
 mod rows;
-pub mod soft;
+pub(crate) mod soft;
 mod solving;
-pub mod stream;
-pub mod tower;
+pub(crate) mod stream;
+pub(crate) mod tower;
 mod xpbd;
 
 use crate::integrate::Plan;

@@ -9,7 +9,7 @@
 //!
 //! * Every [`LOOK_STEPS`] steps loads are read from the impulses, and at once where contacts come or go islands are
 //!   joined anew: what touches has one pace, the highest of its parts.
-//! * Numbers of substeps are [`RUNGS`]. An island climbs a rung where two looks in a row see a load that asks for it
+//! * Numbers of substeps are `RUNGS`. An island climbs a rung where two looks in a row see a load that asks for it
 //!   (an impact asks for nothing), and comes down one where two see less, with a quarter to spare. One rung a look:
 //!   made stiff at once, a column of twelve that had sunk under 2 substeps leapt up with 0.7 m/s under 12. Slender
 //!   stacks are judged by their weight: as bodies come they have all they need at once, before they have sagged.
@@ -30,18 +30,19 @@ use super::tower::{Touching, Towers};
 use crate::body::Bodies;
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::island::root;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 
 use goal::{Island, aimed};
 
-pub use goal::{Goal, RUNGS};
+pub(crate) use goal::Goal;
 
 /// Steps from one look at the loads to the next.
-pub const LOOK_STEPS: u32 = 8;
+pub(crate) const LOOK_STEPS: u32 = 8;
 /// The same where all islands have the number of the settings, and are only looked over for slender stacks.
-pub const TOWER_STEPS: u32 = 32;
+pub(crate) const TOWER_STEPS: u32 = 32;
 
 /// Who has which number of substeps; memory is kept from step to step.
 #[derive(Clone, Debug)]
@@ -116,7 +117,7 @@ impl<R: Real> Paces<R> {
         if self.count() == 1 {
             return 0;
         }
-        let [a, b] = slots.map(|slot| self.index[slot as usize].to_f64() as usize);
+        let [a, b] = slots.each(|slot| self.index[slot as usize].to_f64() as usize);
         a.max(b)
     }
 
@@ -258,7 +259,7 @@ impl<R: Real> Paces<R> {
             let own = self.islands[slot];
             let at = root(&mut self.parent, slot as u32) as usize;
             let island = &mut self.islands[at];
-            let [now, last] = self.load.each_ref().map(|load| load[slot]);
+            let [now, last] = self.load.each_ref().each(|load| load[slot]);
             island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
             island.tower = island.tower.max(self.tower_needs[slot]);
             island.substeps = island.substeps.max(self.of_slot[slot]);
@@ -331,7 +332,7 @@ impl<L: Lanes> Visit<L> for Loads<'_> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let held = c.points.iter().fold(L::zero(), |most, point| most.max(point.held)).to_array();
         for (lane, held) in held.iter().enumerate().take(L::WIDTH) {
-            for slot in [ends.a[lane], ends.b[lane]].map(|slot| slot as usize) {
+            for slot in [ends.a[lane], ends.b[lane]].each(|slot| slot as usize) {
                 // Bodies come and go between a step and the next.
                 if let (Some(load), Some(&substeps)) = (self.load.get_mut(slot), self.substeps.get(slot)) {
                     *load = load.max(held.to_f64() * f64::from(substeps));

@@ -9,6 +9,7 @@ use super::Task;
 use super::block::{answer, cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// Visits to each contact per substep.
@@ -60,10 +61,10 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {
         let zero = L::zero();
         let mut normals = Normals::begin(c, &a, &b);
         let cross = cross(c, &normals);
-        let masses = c.points.map(|point| point.mass);
-        let held = c.points.map(|point| point.held);
+        let masses = c.points.each(|point| point.mass);
+        let held = c.points.each(|point| point.held);
         let answer = answer(cross, masses, held);
-        let wanted: [L; POINTS] = std::array::from_fn(|k| {
+        let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let gap = zero.max(point.separation) * self.per_sec;
             let overlap = zero.max(-(point.separation + self.slop)) * self.bias_rate;

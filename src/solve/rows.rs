@@ -4,6 +4,7 @@ use super::Solving;
 use super::constraint::{Constraint, Point};
 use super::stream::{Ends, Visit};
 use crate::contact::{ContactRow, Manifolds};
+use crate::each::Each as _;
 use crate::integrate::Motion;
 use crate::lanes::Lanes;
 
@@ -22,7 +23,7 @@ impl<L: Lanes, F: FnMut(&ContactRow<L::Elem>)> Visit<L> for Read<'_, L, F> {
             c.follow(moved, &ends);
         }
         let of = |value: fn(&Point<L>) -> L| {
-            [&c.points[0], &c.points[POINTS - 1]].map(|point| value(point).to_array())
+            [&c.points[0], &c.points[POINTS - 1]].each(|point| value(point).to_array())
         };
         let ([s0, s1], [n0, n1]) = (of(|p| p.separation), of(Point::impulse));
         let tangent = c.tangent_impulse.to_array();

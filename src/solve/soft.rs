@@ -17,6 +17,7 @@
 use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Visit};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
@@ -26,15 +27,15 @@ use crate::lanes::Lanes;
 pub const HERTZ_TIMES_SUBSTEP: f64 = 0.18;
 /// Where steps become shorter, contacts become stiffer by no more than this a step: made stiff at once, what has sagged
 /// by h² under long steps leaps up (a column of ten at 1/240 s after 1/10 s fell over).
-pub const STIFFENING: f64 = 0.97;
+pub(crate) const STIFFENING: f64 = 0.97;
 /// Damping ratio ζ: from 5 to 20 a pyramid of base 100 drifts by 5 to 8 cm in 60 s; 1 and 3 shake more.
-pub const DAMPING: f64 = 10.0;
+pub(crate) const DAMPING: f64 = 10.0;
 /// Fastest push out of an overlap: this share of the scene's median radius per step.
 pub const PUSH_CAP: f64 = 0.1;
 
 /// The coefficients of a soft contact for one substep length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Softness<L> {
+pub(crate) struct Softness<L> {
     /// 1/h.
     pub per_sec: L,
     /// Bias velocity per metre of overlap, 1/s.
@@ -56,7 +57,7 @@ pub(super) fn coefficients(h_secs: f64, hertz: f64, damping: f64) -> (f64, f64) 
 
 impl<L: Lanes> Softness<L> {
     /// For substeps of `h_secs`, a frequency of `hertz` and overlaps pushed out at `push_cap` m/s at most.
-    pub fn new(h_secs: f64, hertz: f64, damping: f64, push_cap: f64) -> Self {
+    pub(crate) fn new(h_secs: f64, hertz: f64, damping: f64, push_cap: f64) -> Self {
         let (bias_rate, mass_scale) = coefficients(h_secs, hertz, damping);
         Self {
             per_sec: L::lit(1.0 / h_secs),
@@ -69,7 +70,7 @@ impl<L: Lanes> Softness<L> {
 
 /// The pass before bodies move: normal impulses with bias; `DEEP`: something is, see `deep.rs`.
 #[derive(Debug)]
-pub struct Push<'a, L: Lanes, const DEEP: bool> {
+pub(crate) struct Push<'a, L: Lanes, const DEEP: bool> {
     /// Moving velocities u per slot: ux, uy, uω, 1/m.
     pub rows: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` in a step's first, whose gaps are up to date.
@@ -94,24 +95,24 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
         let (soft, zero) = (&self.soft, L::zero());
         let mut normals = Normals::begin(c, &a, &b);
         let cross = cross(c, &normals);
-        let apart: [L::Mask; POINTS] = std::array::from_fn(|k| zero.lt(c.points[k].separation));
-        let is_deep: [L::Mask; POINTS] = std::array::from_fn(|k| c.points[k].separation.lt(self.deep));
-        let soften: [L; POINTS] = std::array::from_fn(|k| {
+        let apart: [L::Mask; POINTS] = crate::each::indexed(|k| zero.lt(c.points[k].separation));
+        let is_deep: [L::Mask; POINTS] = crate::each::indexed(|k| c.points[k].separation.lt(self.deep));
+        let soften: [L; POINTS] = crate::each::indexed(|k| {
             let rigid = if DEEP { apart[k] | is_deep[k] } else { apart[k] };
             L::select(rigid, L::one(), soft.mass_scale)
         });
-        let masses = c.points.map(|point| point.mass);
+        let masses = c.points.each(|point| point.mass);
         // Impulses in units of u: `share` of those of v.
-        let held = c.points.map(|point| point.held * self.share);
+        let held = c.points.each(|point| point.held * self.share);
         let answer = answer(cross, masses, held);
-        let wanted: [L; POINTS] = std::array::from_fn(|k| {
+        let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let closing = point.separation * soft.per_sec;
             let pushing = soft.push_cap.max(point.separation * soft.bias_rate);
             let pushing = if DEEP { L::select(is_deep[k], zero, pushing) } else { pushing };
             normals.velocity(point) + L::select(apart[k], closing, pushing) - answer[k]
         });
-        let soft_masses: [L; POINTS] = std::array::from_fn(|k| masses[k] * soften[k]);
+        let soft_masses: [L; POINTS] = crate::each::indexed(|k| masses[k] * soften[k]);
         let next = non_negative(cross, soft_masses, wanted);
         for k in 0..POINTS {
             normals.push(c, k, soft_masses[k] * next[k] - masses[k] * held[k]);
@@ -125,7 +126,7 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
 
 /// The pass after bodies moved: normal impulses without bias, then friction.
 #[derive(Debug)]
-pub struct Relax<'a, L: Lanes, const FRICTION: bool> {
+pub(crate) struct Relax<'a, L: Lanes, const FRICTION: bool> {
     /// Velocities per slot: vx, vy, ω, 1/m.
     pub rows: &'a mut [[L::Elem; 4]],
     /// 1/h.

@@ -12,6 +12,7 @@ use super::stream::{Ends, Stream, Visit, WarmStart};
 use super::{Task, avbd, carries_impulses, deep, impulse, pgs, pushes, xpbd};
 use crate::body::Bodies;
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::integrate::{Motion, Warm};
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
@@ -123,7 +124,7 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
-        let ends = || joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
+        let ends = || joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
         let looked = self.paces.looks(goal);
         if looked {
             if goal.max_sag.is_some() {
@@ -332,7 +333,7 @@ impl<L: Lanes> Solving<L> {
                 let soft = softened * (task.stiffness / h_secs);
                 let soft = Softness::new(h_secs, soft, soft::DAMPING, cap);
                 let deep = L::lit(-deep::DEEP * task.traits.length);
-                let [share, per_share] = [share, 1.0 / share].map(L::lit);
+                let [share, per_share] = [share, 1.0 / share].each(L::lit);
                 if self.deep.steps > 0 {
                     stream.visit(&mut soft::Push::<L, true> { rows, moved, soft, deep, share, per_share });
                 } else {

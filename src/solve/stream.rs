@@ -14,6 +14,7 @@ use super::color::Coloring;
 use super::constraint::{Constraint, Parts, Point, Side};
 use super::pace::Paces;
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
 /// What a pass does to one batch; `POINTS` is 1 or 2.
@@ -179,7 +180,7 @@ fn prepared<L: Lanes, const POINTS: usize>(
         geometry: L::gather_rows(manifolds.geometry(), places),
         gap: L::gather_fours(manifolds.gaps(), places),
         impulse: L::gather_fours(manifolds.impulses(), places),
-        matter: slots.map(masses),
+        matter: slots.each(masses),
         two_points: L::zero().lt(L::load(&two_points)),
     })
 }
@@ -363,13 +364,13 @@ impl<L: Lanes> Stream<L> {
     }
 
     /// Bytes of constraint and slots a pass streams per two-point and one-point contact.
-    pub fn bytes_per_contact(&self) -> [usize; 2] {
-        [size_of::<Constraint<L, 2>>(), size_of::<Constraint<L, 1>>()].map(|bytes| bytes / L::WIDTH + 8)
+    pub fn bytes_per_contact() -> [usize; 2] {
+        [size_of::<Constraint<L, 2>>(), size_of::<Constraint<L, 1>>()].each(|bytes| bytes / L::WIDTH + 8)
     }
 
     /// Bytes of constraints and slots a pass streams.
     pub fn bytes(&self) -> usize {
-        let [two, one] = self.bytes_per_contact();
+        let [two, one] = Self::bytes_per_contact();
         (self.two.len() * two + self.one.len() * one) * L::WIDTH
     }
 }
@@ -396,7 +397,7 @@ impl<L: Lanes> Visit<L> for Store<'_, L::Elem> {
 
 /// Sums the impulses of the last step per body: what a substep's warm start adds to its velocity.
 #[derive(Debug)]
-pub struct WarmStart<'a, R: Real> {
+pub(crate) struct WarmStart<'a, R: Real> {
     /// Rows vx, vy, w, 1/m per slot.
     pub rows: &'a mut [[R; 4]],
     /// Factor on the impulses: this step's substep over the last one's.

@@ -19,6 +19,7 @@ use super::constraint::Constraint;
 use super::pace::Goal;
 use super::stream::{Ends, Visit};
 use crate::body::Bodies;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 
@@ -56,7 +57,7 @@ struct Part {
 
 /// Slender stacks; memory is kept from look to look.
 #[derive(Clone, Debug, Default)]
-pub struct Towers {
+pub(crate) struct Towers {
     edges: Vec<Edge>,
     parts: Vec<Part>,
     /// Slots with one contact left.
@@ -108,7 +109,7 @@ impl Towers {
             onto.contacts -= 1;
             onto.which ^= part.which;
             onto.mass += part.mass;
-            onto.moment = [0, 1].map(|k| onto.moment[k] + part.moment[k]);
+            onto.moment = [0, 1].each(|k| onto.moment[k] + part.moment[k]);
             onto.sum = onto.sum.max(sum);
             if onto.contacts == 1 {
                 self.loose.push(below as u32);
@@ -137,7 +138,7 @@ impl Towers {
             if inv_mass > 0.0 && part.contacts > 0 {
                 let mass = 1.0 / inv_mass;
                 part.mass = mass;
-                part.moment = [bodies.x[slot], bodies.y[slot]].map(|at| mass * at.to_f64());
+                part.moment = [bodies.x[slot], bodies.y[slot]].each(|at| mass * at.to_f64());
             }
         }
     }
@@ -173,19 +174,19 @@ pub(super) struct Touching<'a, L> {
 impl<L: Lanes> Visit<L> for Touching<'_, L> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let zero = L::zero();
-        let touches = c.points.map(|point| {
+        let touches = c.points.each(|point| {
             let near = zero.lt(point.held) | point.separation.le(self.touch);
             L::select(near & zero.lt(point.mass), point.mass, zero).to_array()
         });
-        let levers = c.points.map(|point| point.levers[0].to_array());
-        let [nx, ny, ahead] = [c.normal.x, c.normal.y, c.tangent_levers[0]].map(L::to_array);
+        let levers = c.points.each(|point| point.levers[0].to_array());
+        let [nx, ny, ahead] = [c.normal.x, c.normal.y, c.tangent_levers[0]].each(L::to_array);
         for lane in 0..L::WIDTH {
             let [m, n] = [touches[0][lane].to_f64(), touches[POINTS - 1][lane].to_f64()];
             if m + n > 0.0 {
                 // The lever r×n is −r·t.
-                let aside = [0, POINTS - 1].map(|k| -levers[k][lane].to_f64());
+                let aside = [0, POINTS - 1].each(|k| -levers[k][lane].to_f64());
                 let turn = m * n / (m + n) * (aside[0] - aside[1]).powi(2);
-                let normal = [nx[lane], ny[lane]].map(L::Elem::to_f64);
+                let normal = [nx[lane], ny[lane]].each(L::Elem::to_f64);
                 let slots = [ends.a[lane], ends.b[lane]];
                 self.edges.push(Edge { slots, turn, ahead: ahead[lane].to_f64(), aside, normal });
             }

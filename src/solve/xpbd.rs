@@ -22,6 +22,7 @@ use super::Task;
 use super::block::{cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes};
 
 /// Compliance α of contacts, m/N.
@@ -91,10 +92,10 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
         let mut b = side(self.moved, ends.b, vb.inv_mass);
         let zero = L::zero();
         let mut normals = Normals::begin(c, &a, &b);
-        let masses = c.points.map(|point| point.mass);
-        let soften = masses.map(|mass| L::one() / (L::one() + mass * self.softness));
-        let soft: [L; POINTS] = std::array::from_fn(|k| masses[k] * soften[k]);
-        let gaps: [L; POINTS] = std::array::from_fn(|k| {
+        let masses = c.points.each(|point| point.mass);
+        let soften = masses.each(|mass| L::one() / (L::one() + mass * self.softness));
+        let soft: [L; POINTS] = crate::each::indexed(|k| masses[k] * soften[k]);
+        let gaps: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             self.push_cap.max(point.separation) + normals.velocity(point)
         });
@@ -143,7 +144,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         c.follow(self.moved, &ends);
         let zero = L::zero();
-        let held = c.points.map(|point| point.held);
+        let held = c.points.each(|point| point.held);
         if !held.iter().any(|held| zero.lt(*held).any()) {
             return;
         }
@@ -153,7 +154,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
         // Lanes that carry nothing are as if visited alone.
         let carries = held.iter().fold(zero, |sum, held| sum + *held);
         let carries = zero.lt(carries);
-        let next: [L; POINTS] = std::array::from_fn(|k| L::select(carries, next[k], held[k]));
+        let next: [L; POINTS] = crate::each::indexed(|k| L::select(carries, next[k], held[k]));
         for k in 0..POINTS {
             normals.push(c, k, c.points[k].mass * (next[k] - held[k]));
             c.points[k].held = next[k];

@@ -2,12 +2,14 @@
 //!
 //! Settled first, so that the counts wander about what was seen before; then 60 steps are counted.
 
-mod common_motion;
+#[path = "shared/motion.rs"]
+#[allow(dead_code, reason = "each binary takes the helpers it needs")]
+mod shared_motion;
 
-use common_motion::{every_field, ghosts, scene_of, start};
 use lamina2d::scene::{Scene, by_name};
 use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skips};
 use lamina2d::simulation::Simulation;
+use shared_motion::{every_field, ghosts, scene_of, start};
 
 /// Allocations in the next `steps` steps of 1/60 s.
 fn allocations(world: &mut dyn Simulation, steps: usize) -> u64 {

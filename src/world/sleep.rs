@@ -13,6 +13,7 @@
 
 use super::World;
 use crate::body::{BodyError, BodyId};
+use crate::each::Each as _;
 use crate::force::Forces;
 use crate::island::Islands;
 use crate::lanes::Lanes;
@@ -22,7 +23,7 @@ impl<L: Lanes> World<L> {
     /// Takes in which bodies there are, and which of them hang together without touching.
     pub(super) fn look_over_islands(&mut self) {
         if self.settings.sleep {
-            let links = self.joints.living().map(|(_, joint)| joint.bodies.map(|id| id.slot() as u32));
+            let links = self.joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
             self.islands.look_over(&self.bodies, links);
         }
     }

@@ -7,6 +7,7 @@
 
 use super::{StepError, World};
 use crate::body::Bodies;
+use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::measure::{Invariants, Stage, invariants_of};
 
@@ -97,7 +98,7 @@ impl<L: Lanes> World<L> {
     /// Which stage made a body as fast as it is.
     fn stage_behind(&self, slot: usize, free: bool) -> Stage {
         let read = |columns: [&crate::column::Column<L::Elem>; 2]| {
-            let [x, y] = columns.map(|column| column[slot].to_f64());
+            let [x, y] = columns.each(|column| column[slot].to_f64());
             x.hypot(y)
         };
         let predicted = self.motion.predicted_speed(slot);

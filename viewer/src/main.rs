@@ -11,6 +11,7 @@ use lamina_viewer::app::stored_view;
 use lamina_viewer::screenshot::{Camera, MOST_PIXELS, write_png, write_sequence};
 use lamina_viewer::view::{Arrangement, Colour, TrailsOf, View};
 use lamina_viewer::{Live, Viewer};
+use lamina2d::record::{Stamp, set_stamp};
 use lamina2d::scene;
 
 /// Shows recordings of lamina2d frame by frame; two of them side by side.
@@ -22,7 +23,7 @@ struct Args {
     file: Option<PathBuf>,
     /// Another one, shown at the same steps.
     file2: Option<PathBuf>,
-    /// Run this scene: its name, `name/parameter`, or the path of a .toml file; see `lamina scenes`.
+    /// Run this scene: the path of a .toml file, or the name or `name/parameter` of one of the engine's own.
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["file", "file2", "sequence"])]
     live: Option<String>,
     /// Number of bodies of the scene, as it takes it.
@@ -187,6 +188,11 @@ fn main() -> ExitCode {
         eprintln!("lamina-viewer: {sentence}");
         return ExitCode::from(2);
     }
+    set_stamp(Stamp {
+        commit: env!("LAMINA_COMMIT"),
+        rustc: env!("LAMINA_RUSTC"),
+        flags: env!("LAMINA_FLAGS"),
+    });
     let args = Args::parse();
     let (why, code) = match load(&args) {
         Err(why) => (why, 2),

@@ -1,6 +1,6 @@
 //! Each engine's version and build: compiler, flags, SIMD, and the defaults that decide its results.
 
-use lamina2d::report::Machine;
+use lamina::report::Machine;
 use lamina2d::settings::Settings;
 use serde::Serialize;
 use serde_json::{Map, Value, json};

@@ -11,13 +11,14 @@ use anyhow::Context;
 use clap::Parser;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use indicatif::{ProgressBar, ProgressStyle};
+use lamina::cases::{self, SCENES};
+use lamina::report::Machine;
 use lamina_peers::about;
 use lamina_peers::blueprint::Blueprint;
 use lamina_peers::plan::{self, Group};
 use lamina_peers::row::Row;
 use lamina_peers::run::{Results, ticks};
-use lamina2d::report::Machine;
-use lamina2d::scene::{self, SCENES, Scene};
+use lamina2d::scene::{self, Scene};
 use serde_json::json;
 
 /// Where random scenes come from.
@@ -123,7 +124,7 @@ fn load(name: &str) -> anyhow::Result<Scene> {
     let scene = if is_file {
         scene::file::read(name).map(|(scene, _)| scene)
     } else {
-        scene::by_name(name, None, SEED)
+        cases::by_name(name, None, SEED)
     };
     scene.map_err(refuse)
 }

@@ -1,7 +1,8 @@
 //! What is run: scenes, how long before and while the clock runs, and with which engines.
 
-use crate::engine::{Name, Setup};
 use lamina2d::scene::Scene;
+
+use crate::engine::{Name, Setup};
 
 /// Substeps and iterations of the sweeps.
 const SWEEP: [u32; 5] = [1, 2, 4, 8, 16];

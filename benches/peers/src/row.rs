@@ -1,8 +1,9 @@
 //! What is said of a run, measured by the same `f64` code on every engine's states.
 
+use lamina::cases::case_error;
+use lamina::report::Timing;
 use lamina2d::joint::{Joint, JointKind};
-use lamina2d::measure::{case_error, hash_of, penetration};
-use lamina2d::report::Timing;
+use lamina2d::measure::{hash_of, penetration};
 use lamina2d::scene::{BodyKind, Scene};
 use lamina2d::shape::Shape;
 use lamina2d::simulation::BodyState;

@@ -34,6 +34,7 @@ use super::Stiffness;
 use super::pin::{Pin, Response};
 use super::stream::Batches;
 use crate::body::Bodies;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
 use crate::solve::constraint::Side;
@@ -176,13 +177,13 @@ impl Direct {
             }
         }
         for (node, pin) in nodes.iter().zip(pins) {
-            pin.set_inv_inertia(0, node.slots.map(|slot| members[slot].now()));
+            pin.set_inv_inertia(0, node.slots.each(|slot| members[slot].now()));
         }
     }
 
     fn hand_inertia<L: Lanes>(&self, pins: &mut Batches<Pin<L>>) {
         for node in &self.nodes {
-            let inv_inertia = node.slots.map(|slot| self.members[slot].now());
+            let inv_inertia = node.slots.each(|slot| self.members[slot].now());
             pins.link_mut(node.at[0]).set_inv_inertia(node.at[1], inv_inertia);
         }
     }
@@ -208,7 +209,7 @@ impl Direct {
     /// their own, or what turns too far from its neighbour in a substep to be followed.
     fn rub(&mut self, h_secs: f64) {
         for &Node { slots: [first, second], .. } in &self.nodes {
-            let [a, b] = [first, second].map(|slot| self.members[slot]);
+            let [a, b] = [first, second].each(|slot| self.members[slot]);
             let inv_inertia = [a.now(), b.now()];
             let (apart, sum) = (b.side.spin - a.side.spin, inv_inertia[0] + inv_inertia[1]);
             let unresolved = (h_secs * apart / FOLLOWED_RAD).powi(4).min(1.0);
@@ -253,7 +254,7 @@ impl Direct {
     fn give<L: Lanes>(&mut self, pins: &mut Batches<Pin<L>>, rows: &mut [[L::Elem; 4]], share: f64) {
         let Self { nodes, answer, pins: now, members, .. } = self;
         for ((node, answer), pin) in nodes.iter().zip(answer).zip(now) {
-            let [mut a, mut b] = node.slots.map(|slot| members[slot].side);
+            let [mut a, mut b] = node.slots.each(|slot| members[slot].side);
             let impulse = Vec2::new(answer[0], answer[1]);
             pin.apply(&mut a, &mut b, impulse, 0.0);
             members[node.slots[0]].side = a;
@@ -263,7 +264,7 @@ impl Direct {
         }
         for slot in nodes.iter().flat_map(|node| node.slots) {
             let Side { velocity, spin, .. } = members[slot].side;
-            rows[slot][..3].copy_from_slice(&[velocity.x, velocity.y, spin].map(L::Elem::from_f64));
+            rows[slot][..3].copy_from_slice(&[velocity.x, velocity.y, spin].each(L::Elem::from_f64));
         }
     }
 
@@ -272,7 +273,7 @@ impl Direct {
         let Self { nodes, later, own, pins, members, .. } = self;
         own.clear();
         for (at, (node, pin)) in nodes.iter().zip(&*pins).enumerate() {
-            let [a, b] = node.slots.map(|slot| members[slot].side);
+            let [a, b] = node.slots.each(|slot| members[slot].side);
             let [k11, k12, k22] = Response::matrix(pin, a.inv_mass + b.inv_mass);
             let wanted = pin.wanted(&a, &b, how);
             own.push(([[k11, k12], [k12, k22]], [wanted.x, wanted.y]));
@@ -353,7 +354,7 @@ fn coupling(
 }
 
 fn side<R: Real>(row: [R; 4]) -> Side<f64> {
-    let [x, y, spin, inv_mass] = row.map(Real::to_f64);
+    let [x, y, spin, inv_mass] = row.each(Real::to_f64);
     Side { velocity: Vec2::new(x, y), spin, inv_mass }
 }
 
@@ -362,11 +363,11 @@ fn transposed(a: Block) -> Block {
 }
 
 fn times(a: Block, b: Block) -> Block {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
+    crate::each::indexed(|i| crate::each::indexed(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
 }
 
 fn minus(a: Block, b: Block) -> Block {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] - b[i][j]))
+    crate::each::indexed(|i| crate::each::indexed(|j| a[i][j] - b[i][j]))
 }
 
 fn apply(a: Block, v: [f64; 2]) -> [f64; 2] {

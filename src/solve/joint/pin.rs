@@ -20,6 +20,7 @@
 
 use super::row::{Numbers, Row};
 use super::{Linkage, Pose, Stiffness, Swing, anchors, lanes, number, turn};
+use crate::each::Each as _;
 use crate::joint::{Held, Joint};
 use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::{Side, inverse};
@@ -108,10 +109,10 @@ impl<L: Lanes> Pin<L> {
         let number = |value: L| value.to_array()[lane].to_f64();
         let vector = |v: Vec2<L>| Vec2::new(number(v.x), number(v.y));
         Pin {
-            anchors: self.anchors.map(vector),
-            inv_inertia: self.inv_inertia.map(number),
+            anchors: self.anchors.each(vector),
+            inv_inertia: self.inv_inertia.each(number),
             reference: Rot { c: number(self.reference.c), s: number(self.reference.s) },
-            arms: self.arms.map(vector),
+            arms: self.arms.each(vector),
             gap: vector(self.gap),
             angle: number(self.angle),
             row: Row::new(&[], &[]),

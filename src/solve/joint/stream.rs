@@ -8,6 +8,7 @@ use super::rod::Rod;
 use super::row::Numbers;
 use super::{Linkage, Pose, Stiffness, Swing, lanes};
 use crate::body::{Bodies, BodyId};
+use crate::each::Each as _;
 use crate::joint::{Held, Joint, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::scene::BodyKind;
@@ -78,7 +79,7 @@ impl<C> Batches<C> {
             let mut held = [Held::default(); MOST];
             for ((held, &place), joint) in held.iter_mut().zip(places).zip(&joints) {
                 *held = sources.joints.held_at(place);
-                let [a, b] = joint.map_or([0; 2], |joint| joint.bodies.map(|id| id.slot() as u32));
+                let [a, b] = joint.map_or([0; 2], |joint| joint.bodies.each(|id| id.slot() as u32));
                 self.place.push(place);
                 self.a.push(a);
                 self.b.push(b);
@@ -89,7 +90,7 @@ impl<C> Batches<C> {
             self.b.resize(padded, 0);
             let first = padded - L::WIDTH;
             let inv_inertia = [&self.a, &self.b]
-                .map(|slots| lanes(&slots[first..], |&slot| sources.bodies.inv_inertia[slot as usize]));
+                .each(|slots| lanes(&slots[first..], |&slot| sources.bodies.inv_inertia[slot as usize]));
             self.links.push(C::new(&joints, &sources.numbers(&joints), &held, inv_inertia));
         }
     }
@@ -127,11 +128,11 @@ pub struct Sources<'a, R: Real> {
 
 impl<R: Real> Sources<'_, R> {
     fn joints_in(&self, places: &[u32]) -> [Option<&Joint>; MOST] {
-        std::array::from_fn(|k| places.get(k).and_then(|&place| self.joints.at(place)))
+        crate::each::indexed(|k| places.get(k).and_then(|&place| self.joints.at(place)))
     }
 
     fn numbers(&self, joints: &[Option<&Joint>; MOST]) -> [Numbers; MOST] {
-        joints.map(|j| j.map_or_else(Numbers::default, |joint| Numbers::of(joint, self.h_secs, self.share)))
+        joints.each(|j| j.map_or_else(Numbers::default, |joint| Numbers::of(joint, self.h_secs, self.share)))
     }
 }
 
@@ -316,7 +317,7 @@ impl<L: Lanes> JointStream<L> {
     /// Hands impulses and angles back to the joints.
     pub fn end(&mut self, joints: &mut Joints<L::Elem>) {
         each!(self, |c, ends| {
-            let [x, y, drive, limit, angle] = c.held().map(L::to_array);
+            let [x, y, drive, limit, angle] = c.held().each(L::to_array);
             for (k, &place) in ends.place.iter().enumerate() {
                 let held = Held { point: [x[k], y[k]], drive: drive[k], limit: limit[k], angle: angle[k] };
                 joints.hold_at(place, held);
@@ -363,7 +364,7 @@ fn colors<R: Real>(joints: &Joints<R>, bodies: &Bodies<R>) -> Vec<u8> {
     let mut used = vec![0_u64; bodies.len()];
     let mut colors = Vec::new();
     for (place, joint) in joints.living() {
-        let slots = joint.bodies.map(BodyId::slot).into_iter();
+        let slots = joint.bodies.each(BodyId::slot).into_iter();
         let dynamic = slots.filter(|&slot| bodies.kind(slot) == BodyKind::Dynamic);
         let color = dynamic.clone().fold(0, |sum, slot| sum | used[slot]).trailing_ones() as usize;
         if color < COLORS {

@@ -1,12 +1,13 @@
 //! What islands are paced by, and the number of substeps that comes of it.
 
+use crate::each::Each as _;
 use crate::force::Forces;
 use crate::lanes::Real;
 use crate::settings::{Settings, Solver};
 use crate::solve::Task;
 
 /// Numbers of substeps an island may have.
-pub const RUNGS: [u32; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+pub(crate) const RUNGS: [u32; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
 
 /// A stack that has sagged and needs over so many times the substeps it has had is let fall: its contacts, stiffer rung by
 /// rung, would throw it up. Columns with 8 whose prop went after half a second leapt by 0.2 m with a need of 6 times as
@@ -96,7 +97,7 @@ pub(super) fn aimed(goal: &Goal, island: &Island, fresh: bool) -> u32 {
         let enough = RUNGS.into_iter().find(|&n| f64::from(n) >= tower);
         return enough.unwrap_or(RUNGS[RUNGS.len() - 1]).max(island.substeps);
     }
-    let [both, either] = island.load.map(|load| goal.needed(load).max(tower));
+    let [both, either] = island.load.each(|load| goal.needed(load).max(tower));
     let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
     let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {

@@ -5,10 +5,11 @@
 mod common;
 
 use common::{PEERS, after, angle, close, named, scene_of, world};
+use lamina::cases::case_error;
 use lamina_peers::blueprint::Blueprint;
 use lamina_peers::box2d::Box2d;
 use lamina_peers::engine::{self, Name, Setup};
-use lamina2d::measure::{case_error, hash_of};
+use lamina2d::measure::hash_of;
 use lamina2d::scene::{BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::Settings;
 use lamina2d::simulation::simulate;

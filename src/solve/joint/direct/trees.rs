@@ -1,5 +1,6 @@
 //! Which pins make up trees whose masses are too far apart for visits, and in what order these are eliminated.
 
+use crate::each::Each as _;
 use crate::island::root;
 
 /// Masses so far apart are too far for visits, in a tree of any size.
@@ -38,7 +39,7 @@ impl Trees {
                 on[slot].push(k);
             }
             if moves(a) && moves(b) {
-                let [a, b] = [a, b].map(|slot| root(&mut parent, slot as u32) as usize);
+                let [a, b] = [a, b].each(|slot| root(&mut parent, slot as u32) as usize);
                 if a == b {
                     wanted[a] = false;
                 } else {

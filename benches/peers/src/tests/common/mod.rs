@@ -5,7 +5,7 @@
 use lamina_peers::engine::{self, Engine, Name, Setup};
 use lamina2d::force::Forces;
 use lamina2d::joint::JointSpec;
-use lamina2d::scene::{self, BodySpec, Scene};
+use lamina2d::scene::{BodySpec, Scene};
 use lamina2d::simulation::BodyState;
 
 /// Both peers.
@@ -13,7 +13,7 @@ pub(crate) const PEERS: [Name; 2] = [Name::Box2d, Name::Rapier2d];
 
 /// A scene of the library.
 pub(crate) fn named(name: &str) -> Scene {
-    scene::by_name(name, None, 1).unwrap()
+    lamina::cases::by_name(name, None, 1).unwrap()
 }
 
 /// A scene of one's own, under gravity.

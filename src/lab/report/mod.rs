@@ -1,0 +1,67 @@
+//! The report: experiments in, a folder with a page, tables and plots out.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`experiments`] | what is measured, each a table of rows |
+//! | `data` | the list of experiments: what a report consists of |
+//! | `headline` | the result table |
+//! | [`earlier`] | where and when rows were measured that are not of this run |
+//! | `readme` | what the README repeats |
+//! | [`peers`] | what `lamina-peers` measured, read from its file |
+//! | [`instructions`] | what `lamina gate` holds, read from its file |
+//! | `machine` | where it was measured, and with which build |
+//! | `table` | rows as tables and CSV |
+//! | `plots` | SVG from rows |
+//! | [`strip`] | SVG of scenes at a few moments |
+//! | `page` | HTML and Markdown from tables and plots |
+//! | [`compare`] | two reports side by side |
+
+pub mod compare;
+mod data;
+pub mod earlier;
+pub mod experiments;
+mod headline;
+pub mod instructions;
+mod machine;
+mod page;
+pub mod peers;
+mod plots;
+pub mod readme;
+pub mod strip;
+pub(crate) mod table;
+mod timing;
+
+use std::path::Path;
+
+pub(crate) use plots::chart;
+
+pub use data::{Data, EXPERIMENTS, Experiment, Stopped};
+pub use earlier::Earlier;
+pub use headline::Headline;
+pub use machine::Machine;
+pub use table::{Record, Table};
+pub use timing::{Timing, fitted_exponent, median};
+
+/// Writes the page (`index.html`, `summary.md`), each table as CSV, all as JSON, and the plots as SVG.
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn write(data: &Data, folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    std::fs::write(folder.join("data.json"), serde_json::to_string_pretty(data)?)?;
+    let tables = data.tables()?;
+    for table in &tables {
+        table.write_csv(std::fs::File::create(folder.join(format!("{}.csv", table.name)))?)?;
+    }
+    if !data.accuracy.lines.is_empty() {
+        earlier::write(&data.accuracy, &data.machine, folder)?;
+    }
+    let plots = plots::draw(data)?;
+    for plot in &plots {
+        std::fs::write(folder.join(&*plot.file), &plot.svg)?;
+    }
+    let page = page::Page::new(data, &tables, &plots);
+    std::fs::write(folder.join("index.html"), page.html()?)?;
+    std::fs::write(folder.join("summary.md"), page.markdown()?)?;
+    Ok(())
+}

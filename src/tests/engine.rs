@@ -1,0 +1,37 @@
+//! Tests of the engine: kernels against oracles, laws of motion, contacts, joints, sleep, bits.
+
+#[path = "shared/joints.rs"]
+mod shared_joints;
+#[path = "shared/motion.rs"]
+mod shared_motion;
+#[path = "shared/oracle.rs"]
+mod shared_oracle;
+#[path = "shared/pairs.rs"]
+mod shared_pairs;
+#[path = "shared/scenes.rs"]
+mod shared_scenes;
+#[path = "shared/sleep.rs"]
+mod shared_sleep;
+
+mod engine {
+    mod bodies;
+    mod chains;
+    mod contacts;
+    mod continuous;
+    mod fuzz;
+    mod golden;
+    mod joints;
+    mod motion_laws;
+    mod motion_orders;
+    mod motion_skips;
+    mod oracle_broad;
+    mod oracle_lanes;
+    mod oracle_narrow;
+    mod paces;
+    mod refusals;
+    mod scenes;
+    mod sleep;
+    mod solvers;
+    mod waking;
+    mod watchdog;
+}
