@@ -17,6 +17,7 @@
 //! has no counts all fail.
 //!
 //! ```
+//! # std::env::set_current_dir("../..").expect("a checkout");
 //! let blessed = lamina::gate::baseline("reports/instructions.toml".as_ref())?;
 //! for counts in &blessed.baseline {
 //!     assert!(!counts.reasons.is_empty(), "counts of {} without a reason", counts.toolchain);
