@@ -1,7 +1,5 @@
 //! What takes minutes, or takes them without optimisation: `cargo test --release --test slow`.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 #[path = "shared/cli.rs"]
 #[allow(dead_code, reason = "each binary takes the helpers it needs")]
 mod shared_cli;

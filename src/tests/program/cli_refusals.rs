@@ -1,8 +1,6 @@
 //! Bad input to the program: every line of these tables is refused with exit code 2, one message that names
 //! the item, the field and the value, nothing on stdout, and never a panic.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use crate::shared_cli::{folder, lamina, run_file, write};
 
 #[test]

@@ -1,7 +1,5 @@
 //! The report's strips of frames: each body in each frame, the same bytes from every run, and commands that work.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use std::process::Command;
 
 use assert_cmd::cargo::cargo_bin;

@@ -1,5 +1,7 @@
 //! What the tests of the program share: running `lamina`, and what every answer of it must be.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::path::{Path, PathBuf};
 
 use assert_cmd::cargo::cargo_bin_cmd;

@@ -59,7 +59,7 @@ everywhere!(f64, 1 => f64s::X1, 4 => f64s::X4);
 pub(crate) fn bodies_of<R: Real>(specs: &[BodySpec]) -> Bodies<R> {
     let mut bodies = Bodies::new();
     for spec in specs {
-        bodies.insert(spec).unwrap();
+        bodies.insert(spec).expect("a good body");
     }
     bodies.refresh_polygons();
     bodies

@@ -168,7 +168,7 @@ impl Csv {
 impl Table for Csv {
     fn row(&mut self, row: &[f64]) -> anyhow::Result<()> {
         let cells = row.iter().enumerate().map(|(at, value)| text(*value, at < self.1));
-        Ok(self.0.write_record(cells).map_err(io_error)?)
+        self.0.write_record(cells).map_err(io_error)
     }
     fn end(mut self: Box<Self>) -> anyhow::Result<()> {
         Ok(self.0.flush()?)
