@@ -86,7 +86,7 @@ pub fn write(accuracy: &Accuracy, machine: &Machine, folder: &Path) -> anyhow::R
     Ok(std::fs::write(folder.join("accuracy.json"), serde_json::to_string_pretty(&sweep)?)?)
 }
 
-/// Reads what [`write`] wrote, with the drawings beside it.
+/// Reads what [`write()`] wrote, with the drawings beside it.
 ///
 /// # Errors
 /// A file that cannot be read, or is not one of these.
