@@ -242,8 +242,22 @@ impl<R: Real> Manifolds<R> {
         let (first, last) = (places[0] as usize, places[L::WIDTH - 1] as usize);
         if last < self.pairs() && last - first == L::WIDTH - 1 {
             // Neighbours, as all are where every pair is looked at: rows go straight to their places.
-            return self.write_neighbours(first, code, geometry, gap);
+            self.write_neighbours(first, code, geometry, gap);
+        } else {
+            self.write_scattered(places, code, geometry, gap, scratch);
         }
+    }
+
+    /// Out of line, as [`Manifolds::write_apart`]: every bucket at every width would hold its copy.
+    #[inline(never)]
+    fn write_scattered<L: Lanes<Elem = R>>(
+        &mut self,
+        places: &[u32],
+        code: L,
+        geometry: [L; ROW],
+        gap: [L; 4],
+        scratch: &mut [[R; ROW]; 16],
+    ) {
         L::store_rows(geometry, scratch);
         L::scatter_fours(gap, self.now.gap.fours_mut(), places);
         let (codes, rows) = (code.to_array(), self.now.geometry.rows_mut());
@@ -279,7 +293,7 @@ impl<R: Real> Manifolds<R> {
     }
 
     /// Notes that `WIDTH` pairs do not touch.
-    #[inline(always)]
+    #[inline(never)]
     pub fn write_apart(&mut self, places: &[u32]) {
         for &place in places {
             self.set_code(place as usize, R::ZERO);

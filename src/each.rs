@@ -11,13 +11,7 @@ pub(crate) trait Each<T, const N: usize> {
 impl<T: Copy, const N: usize> Each<T, N> for [T; N] {
     #[inline(always)]
     fn each<U: Copy>(self, mut f: impl FnMut(T) -> U) -> [U; N] {
-        let mut out = [f(self[0]); N];
-        let mut k = 1;
-        while k < N {
-            out[k] = f(self[k]);
-            k += 1;
-        }
-        out
+        indexed(|k| f(self[k]))
     }
 }
 

@@ -73,15 +73,38 @@ fn note_fast<L: Lanes>(
 ) {
     let is_fast = bodies.core.lanes::<L>()[at].lt(path);
     if is_fast.any() {
-        let moved = moved.each(L::to_array);
-        for lane in set_lanes(is_fast.bits()) {
-            let slot = at * L::WIDTH + lane;
-            fast.push(Fast {
-                slot: slot as u32,
-                start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].each(|column| column[slot]),
-                moved: moved.each(|lanes| lanes[lane]),
-            });
-        }
+        push_fast(bodies, at, is_fast.bits(), moved, fast);
+    }
+}
+
+/// Out of line, as [`move_finely`]: inlined into every scheme at every width these few calls were a tenth of this room.
+#[cold]
+#[inline(never)]
+fn push_fast<L: Lanes>(
+    bodies: &Bodies<L::Elem>,
+    at: usize,
+    lanes: u32,
+    moved: [L; 3],
+    fast: &mut Vec<Fast<L::Elem>>,
+) {
+    let moved = moved.each(L::to_array);
+    for lane in set_lanes(lanes) {
+        let slot = at * L::WIDTH + lane;
+        fast.push(Fast {
+            slot: slot as u32,
+            start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].each(|column| column[slot]),
+            moved: moved.each(|lanes| lanes[lane]),
+        });
+    }
+}
+
+/// Moves a block of bodies whose positions are finer than their columns. By value: a reference would keep blocks that
+/// nobody hands over here in memory too.
+#[cold]
+#[inline(never)]
+fn move_finely<L: Lanes>(bodies: &mut Bodies<L::Elem>, at: usize, moved: Block<L>) {
+    for (i, moved) in moved.iter().enumerate() {
+        bodies.move_lanes(at + i, [moved.x, moved.y]);
     }
 }
 
@@ -245,9 +268,7 @@ fn fly_with<L: Lanes, S: Scheme>(
             bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
         }
         if is_fine {
-            for (i, moved) in moved.iter().enumerate() {
-                bodies.move_lanes(at + i, [moved.x, moved.y]);
-            }
+            move_finely(bodies, at, moved);
         } else {
             store_block(&mut bodies.x, &mut bodies.y, at, &crate::each::indexed(|i| x[i] + moved[i]));
         }

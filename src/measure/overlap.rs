@@ -122,34 +122,3 @@ fn disc_separation(disc: &Outline, outline: &Outline) -> f64 {
         .fold(f64::MAX, f64::min);
     nearest - disc.radius
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn square(x: f64, y: f64) -> Outline {
-        let vertices =
-            [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|[u, v]| [x + u, y + v]).to_vec();
-        Outline { centre: [x, y], radius: 0.0, vertices, fixed: false }
-    }
-    fn disc(x: f64, y: f64) -> Outline {
-        Outline { centre: [x, y], radius: 0.5, vertices: Vec::new(), fixed: false }
-    }
-
-    #[test]
-    fn known_overlaps() {
-        assert!((penetration(&[square(0.0, 0.0), square(0.9, 0.3)]).max - 0.1).abs() < 1e-12);
-        assert!((penetration(&[square(0.0, 0.0), disc(0.9, 0.3)]).max - 0.1).abs() < 1e-12);
-        assert!((penetration(&[disc(0.0, 0.0), disc(0.6, 0.0)]).max - 0.4).abs() < 1e-12);
-        let corner = penetration(&[square(0.0, 0.0), disc(0.74, 0.82)]);
-        assert!((corner.max - 0.1).abs() < 1e-12);
-        assert_eq!(penetration(&[square(0.0, 0.0), square(2.0, 0.0)]), Penetration::default());
-    }
-
-    #[test]
-    fn pairs_of_fixed_bodies_do_not_count() {
-        let fixed = Outline { fixed: true, ..square(0.0, 0.0) };
-        assert_eq!(penetration(&[fixed.clone(), fixed.clone()]).pairs, 0);
-        assert_eq!(penetration(&[fixed, square(0.0, 0.0)]).pairs, 1);
-    }
-}

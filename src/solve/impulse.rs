@@ -11,10 +11,10 @@
 //! The two points of a face are solved together, directly and by cases ([`non_negative`]): one after the
 //! other left a resting box turning at 0.02 rad/s and creeping sideways at 5 cm/s; together, neither.
 
-use super::Task;
 use super::block::{cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
 use super::stream::{Ends, Stream, Visit};
+use super::{Task, Traits};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 
@@ -31,26 +31,26 @@ pub(super) fn resolve<L: Lanes>(
     moved: Option<&[[L::Elem; 4]]>,
 ) {
     let threshold = L::lit(task.swift());
-    match (task.traits.friction, task.traits.restitution) {
-        (true, true) => stream.visit(&mut Resolve::<L, true, true> { rows, moved, threshold }),
-        (true, false) => stream.visit(&mut Resolve::<L, true, false> { rows, moved, threshold }),
-        (false, true) => stream.visit(&mut Resolve::<L, false, true> { rows, moved, threshold }),
-        (false, false) => stream.visit(&mut Resolve::<L, false, false> { rows, moved, threshold }),
-    }
+    let Traits { friction, restitution, .. } = task.traits;
+    stream.visit(&mut Resolve::<L> { rows, moved, threshold, friction, restitution });
 }
 
 /// Velocities: one pass.
 #[derive(Debug)]
-struct Resolve<'a, L: Lanes, const FRICTION: bool, const BOUNCE: bool> {
+struct Resolve<'a, L: Lanes> {
     /// Velocities per slot: vx, vy, ω, 1/m.
     rows: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` where gaps are up to date.
     moved: Option<&'a [[L::Elem; 4]]>,
     /// Slower approaches do not bounce, m/s.
     threshold: L,
+    /// Does anything rub?
+    friction: bool,
+    /// Does anything bounce?
+    restitution: bool,
 }
 
-impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_, L, FRICTION, BOUNCE> {
+impl<L: Lanes> Visit<L> for Resolve<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
@@ -60,7 +60,7 @@ impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_
         let mut normals = Normals::begin(c, &a, &b);
         let approaches: [L; POINTS] = crate::each::indexed(|k| {
             let approach = normals.velocity(&c.points[k]);
-            if BOUNCE {
+            if self.restitution {
                 let bounces = approach.lt(-self.threshold);
                 approach * (L::one() + L::select(bounces, c.restitution, L::zero()))
             } else {
@@ -75,7 +75,7 @@ impl<L: Lanes, const FRICTION: bool, const BOUNCE: bool> Visit<L> for Resolve<'_
             c.points[k].held = stopped[k];
         }
         normals.end(c, &mut a, &mut b);
-        if FRICTION {
+        if self.friction {
             c.tangent_impulse = L::zero();
             c.solve_friction(&mut a, &mut b);
         }

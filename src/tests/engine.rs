@@ -14,10 +14,12 @@ mod shared_scenes;
 mod shared_sleep;
 
 mod engine {
+    mod balances;
     mod bodies;
     mod chains;
     mod contacts;
     mod continuous;
+    mod fields;
     mod fuzz;
     mod golden;
     mod joints;
@@ -30,6 +32,7 @@ mod engine {
     mod paces;
     mod refusals;
     mod scenes;
+    mod shapes;
     mod sleep;
     mod solvers;
     mod waking;

@@ -195,7 +195,7 @@ fn complexity(lines: &[MixLine]) -> Option<String> {
 }
 
 /// Which integrator where nothing touches, in a sentence per error?
-pub fn smooth(fastest: &[Fastest]) -> Vec<String> {
+fn smooth(fastest: &[Fastest]) -> Vec<String> {
     let of = |(k, level): (usize, &f64)| {
         let mut wins: BTreeMap<&str, usize> = BTreeMap::new();
         let alone = |method: &str| Integrator::ALL.iter().any(|integrator| integrator.name() == method);

@@ -51,8 +51,6 @@ pub struct Sweep<M = Earlier> {
     pub tables: Vec<Table>,
     /// What its rows answer.
     pub answers: Vec<String>,
-    /// What smooth motion is fastest with, for the README.
-    pub smooth: Vec<String>,
     /// Its drawings; their SVG is in files beside this one.
     pub drawings: Vec<Drawing>,
 }
@@ -80,7 +78,6 @@ pub fn write(accuracy: &Accuracy, machine: &Machine, folder: &Path) -> anyhow::R
         // What the page shows of them; all of it is in their CSV.
         tables: tables(accuracy)?.into_iter().map(Table::without_raw).collect(),
         answers: accuracy.answers.clone(),
-        smooth: accuracy.smooth.clone(),
         drawings: accuracy.drawings.clone(),
     };
     Ok(std::fs::write(folder.join("accuracy.json"), serde_json::to_string_pretty(&sweep)?)?)

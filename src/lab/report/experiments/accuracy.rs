@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::accuracy::answers::{MixLine, answers, mix_lines, smooth};
+use crate::accuracy::answers::{MixLine, answers, mix_lines};
 use crate::accuracy::contact::{self, Verdict};
 use crate::accuracy::{Effort, Fastest, Line, Results, chosen, lines, measure, write};
 
@@ -52,8 +52,6 @@ pub struct Accuracy {
     pub mixes: Vec<MixLine>,
     /// What the rows answer.
     pub answers: Vec<String>,
-    /// Of these, what smooth motion is fastest with.
-    pub smooth: Vec<String>,
     /// A line per case.
     pub fastest: Vec<Fastest>,
     /// Drawings of some cases.
@@ -79,7 +77,6 @@ pub fn run(tick: &mut dyn FnMut() -> anyhow::Result<()>) -> anyhow::Result<Accur
     }
     accuracy.mixes = mix_lines(&all)?;
     accuracy.answers = answers(&accuracy.mixes, &accuracy.fastest);
-    accuracy.smooth = smooth(&accuracy.fastest);
     accuracy.contact = contact::verdicts(&cases)?;
     Ok(accuracy)
 }
