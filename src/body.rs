@@ -16,25 +16,27 @@
 //! number (4 B and a trigonometric call wherever it is used).
 
 mod check;
+mod drive;
 mod fine;
 mod grow;
 mod kind;
 mod polygons;
+mod spec;
 
 use std::ops::Range;
 
 use crate::column::Column;
-use crate::drive::{Drive, Drives};
 use crate::each::Each as _;
 use crate::lanes::{ROW, Real};
-use crate::scene::{BodyKind, BodySpec};
 use crate::shape::Shape;
 use crate::vec2::Rot;
 
 pub use check::BodyError;
 use check::Checker;
+use drive::{Drive, Drives};
 pub(crate) use fine::fine_difference;
 pub use polygons::{HullRows, Polygons};
+pub use spec::{BodyKind, BodySpec, ShapeSpec};
 
 /// A body's stable name: slot and generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

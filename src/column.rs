@@ -2,8 +2,10 @@
 
 use crate::lanes::{Lanes, ROW, Real};
 
-/// Columns are padded to a multiple of this many elements: a whole number of integration blocks
-/// ([`crate::integrate::BLOCK`] values) at the widest lanes. Every width sees the same padding,
+/// Lane values that smooth motion advances together; fields are matched once for all of them.
+pub const BLOCK: usize = 4;
+
+/// Columns are padded to a multiple of this many elements: a whole number of [`BLOCK`]s at the widest lanes. Every width sees the same padding,
 /// so a kernel has no tail loop and the padding cannot tell widths apart.
 pub const PAD: usize = 64;
 

@@ -33,11 +33,10 @@
 
 use glam::DVec2;
 
-use crate::body::{Bodies, Form};
+use crate::body::{Bodies, BodyKind, Form};
 use crate::each::Each as _;
-use crate::integrate::{Fast, FastBodies};
 use crate::lanes::Real;
-use crate::scene::BodyKind;
+use crate::motion::{Fast, FastBodies};
 use crate::shape::MAX_VERTICES;
 use crate::vec2::{Rot, Vec2};
 

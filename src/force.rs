@@ -1,7 +1,7 @@
 //! Fields a scene may carry, and what they do to a block of bodies.
 //!
 //! A scene's [`Forces`] become a list of [`Field`]s; a field that is absent is not in the list and costs
-//! nothing. The list is walked once per block of [`BLOCK`](crate::integrate::BLOCK) lane values, so an enum is
+//! nothing. The list is walked once per block of [`BLOCK`](crate::column::BLOCK) lane values, so an enum is
 //! matched outside the lane loop.
 
 mod field;

@@ -11,8 +11,10 @@ use crate::settings::{Broad, Settings};
 use crate::world::World;
 
 pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
-pub use crate::integrate::{BLOCK, Motion, Plan, STIR, Warm, advance, fly, predict};
+pub use crate::column::BLOCK;
+pub use crate::integrate::{advance, fly, predict};
 pub use crate::island::Islands;
+pub use crate::motion::{Motion, Plan, STIR, Warm};
 pub use crate::narrow::{Narrow, Stirred};
 pub use crate::solve::soft::{HERTZ_TIMES_SUBSTEP, PUSH_CAP};
 pub use crate::solve::{Solving, Task, Traits, carries_impulses, pushes};

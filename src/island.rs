@@ -23,17 +23,17 @@
 
 use std::ops::Range;
 
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::column::Column;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
-use crate::scene::BodyKind;
+use crate::partition::Sets;
 
 /// All bodies of an island must have been quiet for so long before it falls asleep.
 pub(crate) const QUIET_SECS: f64 = 0.5;
 /// Below this speed, in bounding radii per second, a body is quiet: in [`QUIET_SECS`] it then goes no further than
-/// a manifold is held to be unchanged ([`crate::integrate::STIR`]).
+/// a manifold is held to be unchanged ([`crate::motion::STIR`]).
 ///
 /// Measured (largest speed of any body per half second): pyramid/10 falls below 1 mm/s in 2 s, pyramid/20 below 5
 /// mm/s in 4.5 s, polygons/150 below 2 mm/s in 8 s, rain/200 and cards/3 likewise, all of them decaying towards 0;
@@ -42,7 +42,7 @@ pub(crate) const QUIET_SECS: f64 = 0.5;
 ///
 /// `pgs` leaves a resting body ½gh of velocity, 2 cm/s with the defaults, which its next step takes away: under it
 /// nothing of ordinary size falls asleep.
-const QUIET_RADII_PER_SEC: f64 = crate::integrate::STIR / QUIET_SECS;
+const QUIET_RADII_PER_SEC: f64 = crate::motion::STIR / QUIET_SECS;
 /// And below what gravity gives in so many seconds: large bodies and weak gravity take their time to begin a fall.
 const QUIET_FALL_SECS: f64 = 1e-3;
 
@@ -68,7 +68,7 @@ pub struct Tired {
 
 /// Who sleeps; memory is kept from step to step.
 ///
-/// Bytes per slot in f32: two flags 2, ring 4, parent 4, bits 1, quiet time 4.
+/// Bytes per slot in f32: two flags 2, ring 4, set 4, bits 1, quiet time 4.
 #[derive(Clone, Debug)]
 pub struct Islands<R: Real> {
     asleep: Vec<bool>,
@@ -78,8 +78,8 @@ pub struct Islands<R: Real> {
     next: Vec<u32>,
     /// Seconds a body has been quiet; far below 0 while it sleeps, so that it does not tire again.
     quiet_secs: Column<R>,
-    /// Union-find: each root is the lowest slot of its island.
-    parent: Vec<u32>,
+    /// Islands in the making.
+    sets: Sets,
     bits: Vec<u8>,
     kinematic: Vec<u32>,
     /// Slots that hang together without touching.
@@ -105,7 +105,7 @@ impl<R: Real> Default for Islands<R> {
             awake: Vec::new(),
             next: Vec::new(),
             quiet_secs: Column::new(R::ZERO),
-            parent: Vec::new(),
+            sets: Sets::default(),
             bits: Vec::new(),
             kinematic: Vec::new(),
             links: Vec::new(),
@@ -162,7 +162,6 @@ impl<R: Real> Islands<R> {
         self.asleep.resize(len, false);
         self.awake.resize(len, false);
         self.next.resize(len, 0);
-        self.parent.resize(len, 0);
         self.bits.resize(len, 0);
         self.quiet_secs.resize(len);
         self.kinematic.clear();
@@ -329,7 +328,7 @@ impl<R: Real> Islands<R> {
             if !self.awake[slot] || bodies.kind(slot) != BodyKind::Dynamic {
                 continue;
             }
-            let root = root(&mut self.parent, slot as u32) as usize;
+            let root = self.sets.of(slot as u32) as usize;
             let bits = self.bits[root];
             let rests = bits & SUPPORTED != 0 || !(fields || bits & DRIFTING != 0);
             if bits & RESTLESS == 0 && rests {
@@ -340,24 +339,24 @@ impl<R: Real> Islands<R> {
 
     /// Finds the islands of awake bodies and what they are.
     fn join(&mut self, bodies: &Bodies<R>, manifolds: &Manifolds<R>, runs: &[Range<usize>]) {
+        self.sets.part(bodies.len(), runs);
         for slot in runs.iter().cloned().flatten() {
-            (self.parent[slot], self.bits[slot]) = (slot as u32, 0);
+            self.bits[slot] = 0;
         }
         let is_dynamic = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
-        let Self { links, awake, parent, bits, .. } = self;
+        let Self { links, awake, sets, bits, .. } = self;
         let awake_links = links.iter().filter(|ends| ends.iter().any(|&end| awake[end as usize]));
         let touching = manifolds.touching().iter().map(|&place| manifolds.slots(place as usize));
         let edges = touching.chain(awake_links.copied());
-        for ends @ [a, b] in edges.clone() {
+        for ends in edges.clone() {
             if ends.into_iter().all(is_dynamic) {
-                let (a, b) = (root(parent, a), root(parent, b));
-                parent[a.max(b) as usize] = a.min(b);
+                sets.join(ends);
             }
         }
         for [a, b] in edges {
             for (own, other) in [(a, b), (b, a)] {
                 if is_dynamic(own) && !is_dynamic(other) {
-                    let root = root(parent, own) as usize;
+                    let root = sets.of(own) as usize;
                     bits[root] |= if awake[other as usize] { RESTLESS } else { SUPPORTED };
                 }
             }
@@ -365,7 +364,7 @@ impl<R: Real> Islands<R> {
         let window = R::from_f64(QUIET_SECS);
         for slot in runs.iter().cloned().flatten().filter(|&slot| is_dynamic(slot as u32)) {
             let quiet = window <= self.quiet_secs[slot];
-            let root = root(parent, slot as u32) as usize;
+            let root = sets.of(slot as u32) as usize;
             bits[root] |= if quiet { 0 } else { RESTLESS };
             bits[root] |= if is_at_rest(bodies, slot) { 0 } else { DRIFTING };
         }
@@ -387,17 +386,6 @@ impl<R: Real> Islands<R> {
         self.sleeping += 1;
         self.changed = true;
     }
-}
-
-/// The lowest slot of an island in the making; paths are halved on the way.
-pub(crate) fn root(parent: &mut [u32], slot: u32) -> u32 {
-    let mut at = slot;
-    while parent[at as usize] != at {
-        let above = parent[parent[at as usize] as usize];
-        parent[at as usize] = above;
-        at = above;
-    }
-    at
 }
 
 /// Are all velocities of a body exactly 0?

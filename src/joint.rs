@@ -10,10 +10,9 @@
 mod check;
 mod spec;
 
-use crate::body::{Bodies, BodyId};
+use crate::body::{Bodies, BodyId, BodyKind};
 use crate::each::Each as _;
 use crate::lanes::Real;
-use crate::scene::BodyKind;
 use crate::vec2::{Rot, Vec2};
 
 use check::Checker;

@@ -14,20 +14,23 @@
 //! ```
 //!
 //! # Rooms
-//! Dependencies run downward only.
+//! A room knows those of lower rows and those before it in its own row; `src/tests/engine/rooms.rs` holds every `use` to it.
 //!
 //! | room | what is in it |
 //! |---|---|
 //! | package `lamina` in `src/lab` | the laboratory and the program: cases, experiments, the page; run time against error; where it breaks; instruction counts; the baseline engine |
-//! | `record`, `processor` (feature `record`) | recordings, written and read; the check that programs make first |
+//! | [`internals`] | what benches, laboratory and tests measure of the inside |
+//! | `processor`, `record` (feature `record`) | the check that programs make first; recordings, written and read |
 //! | [`session`] | a run that is acted upon, and done again from its events |
 //! | [`simulation`] | a world of any precision and width behind one interface |
-//! | [`scene`], [`measure`], [`clock`] | named scenes and scene files; times, counts, errors, hash; fixed steps |
 //! | [`world`] | the step, top to bottom |
-//! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`] | the stages; they never import each other's work, only what it leaves behind |
-//! | [`island`] | which bodies are at rest together and sleep |
-//! | [`contact`], [`joint`], [`force`], [`body`], [`drive`], [`shape`] | manifolds and carried impulses; joints; fields; columns; driven bodies; shapes |
-//! | [`mod@column`], [`vec2`], [`lanes`] | aligned columns; vectors and rotations; the only room that names `wide` |
+//! | [`scene`], [`measure`] | named scenes and scene files; times, counts, errors, hash |
+//! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`], [`island`] | the stages, and which bodies are at rest together and sleep; none imports another's work, only what it leaves behind |
+//! | [`contact`], [`motion`], [`partition`] | manifolds and carried impulses; the rows and displacements of a step in progress; who belongs together |
+//! | [`body`], [`joint`], [`force`] | columns of bodies and what they are written down as; joints; fields |
+//! | [`shape`], [`settings`] | shapes and their masses; what a run may choose |
+//! | [`mod@column`], [`vec2`], [`pair`], [`clock`] | aligned columns; vectors and rotations; pairs of numbers in files; fixed steps |
+//! | [`each`], [`lanes`] | arrays mapped by loops; lanes, the only room that names `wide` |
 //!
 //! # One step
 //! | stage | reads | writes |
@@ -55,7 +58,7 @@
 //! # Invariants
 //! 1. Lane width, thread count, debug or release never change a bit of a result. Kernels use + − × ÷ √,
 //!    comparisons and select; no fused or approximate operation, no sum across lanes. Golden hashes
-//!    (`src/tests/golden.rs`) hold every width and build to it.
+//!    (`src/tests/engine/golden.rs`) hold every width and build to it.
 //! 2. Columns are whole lanes; padding is inert (no mass, out of reach). There are no tail loops.
 //! 3. A colour of contacts, or of joints, holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
 //! 4. Enums are matched once per stage, bucket or block, never per lane value. Width 1 is the scalar version.
@@ -112,7 +115,6 @@ pub mod clock;
 pub mod column;
 pub mod contact;
 mod continuous;
-mod drive;
 mod each;
 pub mod force;
 mod integrate;
@@ -120,8 +122,10 @@ mod island;
 pub mod joint;
 pub mod lanes;
 pub mod measure;
+mod motion;
 mod narrow;
 mod pair;
+mod partition;
 #[cfg(feature = "record")]
 pub mod processor;
 #[cfg(feature = "record")]

@@ -12,11 +12,12 @@ use crate::body::Bodies;
 use crate::broad::{BroadCounts, BroadPhase};
 use crate::continuous::Continuous;
 use crate::force::{Field, Forces};
-use crate::integrate::{self, Motion, Plan, Warm};
+use crate::integrate;
 use crate::island::Islands;
 use crate::joint::{JointError, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in};
+use crate::motion::{Motion, Plan, Skipped, Warm};
 use crate::narrow::{Narrow, Stirred};
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Settings, Skip};
@@ -263,7 +264,7 @@ impl<L: Lanes> World<L> {
             }
             let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
-            self.solving.hand_back_chosen(&mut self.narrow, &self.motion);
+            self.solving.hand_back_chosen(self.narrow.found(), &self.motion);
             match self.narrow.wanted() {
                 Some(slots) => self.bodies.refresh_polygons_in(slots),
                 None => self.bodies.refresh_polygons(),
@@ -285,21 +286,21 @@ impl<L: Lanes> World<L> {
         task: &Task<'_, L::Elem>,
         seen: &Seen,
         clock: &mut Instant,
-    ) -> (integrate::Skipped, bool) {
+    ) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
         let goal = Goal::of(task, &self.settings, &self.forces);
         let repaced = goal.is_some_and(|goal| {
             solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
-            solving.prepare(bodies, &mut self.narrow, seen.changed || repaced, motion);
-            solving.note_depth(&self.narrow, task.traits.length);
+            solving.prepare(bodies, self.narrow.found(), seen.changed || repaced, motion);
+            solving.note_depth(|| self.narrow.deepest(), task.traits.length);
         }
         let awake = self.islands.awake_beside_sleepers();
         solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
         let warm = solving.begin(task, bodies, &self.narrow.manifolds, motion);
         self.times.lap(Stage::Prepare, clock);
-        let (mut skipped, mut finite) = (integrate::Skipped::default(), true);
+        let (mut skipped, mut finite) = (Skipped::default(), true);
         for pace in 0..self.solving.paces().count() {
             if finite {
                 self.solving.enter_pace(pace, &mut self.motion);
@@ -321,12 +322,12 @@ impl<L: Lanes> World<L> {
         pace: usize,
         mut warm: Warm,
         clock: &mut Instant,
-    ) -> (integrate::Skipped, bool) {
+    ) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
         let substeps = solving.paces().substeps(pace).unwrap_or(task.plan.substeps);
         let plan = Plan { substeps, h_secs: task.dt_secs / f64::from(substeps), ..*task.plan };
         let task = &Task { plan: &plan, ..*task };
-        let mut skipped = integrate::Skipped::default();
+        let mut skipped = Skipped::default();
         for substep in 0..substeps {
             let plan = Plan { since_secs: plan.h_secs * f64::from(substep), ..plan };
             skipped = integrate::predict::<L>(&plan, bodies, motion, warm);

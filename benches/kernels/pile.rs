@@ -57,7 +57,7 @@ impl Pile {
     /// Constraints of all contacts.
     pub(super) fn solving<L: Lanes<Elem = f32>>(&self) -> Solving<L> {
         let (mut solving, mut narrow) = (Solving::default(), self.narrow.clone());
-        solving.prepare(&self.bodies, &mut narrow, true, &self.motion());
+        solving.prepare(&self.bodies, narrow.found(), true, &self.motion());
         solving
     }
 

@@ -26,7 +26,7 @@ impl Stage for Prepare {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, (solving, narrow): &mut Self::Memory<L>) {
-        solving.prepare(&self.pile.bodies, narrow, true, &self.motion);
+        solving.prepare(&self.pile.bodies, narrow.found(), true, &self.motion);
     }
 
     fn answer<L: Lanes<Elem = f32>>(&self, (solving, _): &Self::Memory<L>) -> Answer {

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::{BodyKind, BodySpec};
 use crate::lanes::Real;
-use crate::scene::{BodyKind, BodySpec};
 use crate::shape::{Shape, ShapeError};
 
 /// Why a body was refused: which one (in order of insertion), which field, which value.

@@ -1,9 +1,9 @@
 //! What all columns share: room for one more body, the inert state, bytes.
 
+use super::BodyKind;
 use super::{Bodies, Filter, Form, HullRows};
 use crate::column::Column;
 use crate::lanes::Real;
-use crate::scene::BodyKind;
 
 impl<R: Real> Bodies<R> {
     /// Bytes held by columns and polygon rows.

@@ -2,8 +2,8 @@
 
 use super::check::Checker;
 use super::{Bodies, BodyError, BodyId, Form};
+use super::{BodyKind, BodySpec, ShapeSpec};
 use crate::lanes::Real;
-use crate::scene::{BodyKind, BodySpec, ShapeSpec};
 
 impl<R: Real> Bodies<R> {
     /// Makes a body static, kinematic or dynamic. It stays where it is; a static one stops, and no kinematic one goes

@@ -4,11 +4,10 @@
 //! the body's oriented box, clamped in the box's frame.
 
 use super::{meet, ordered};
-use crate::body::{Bodies, Form};
+use crate::body::{Bodies, BodyKind, Form};
 use crate::column::Column;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
-use crate::scene::BodyKind;
 use crate::vec2::{Rot, Vec2};
 
 /// A box or polygon this many times longer than wide is long.

@@ -1,10 +1,9 @@
 //! How far beyond its bounds a body may meet another within the step to come.
 
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::column::Column;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
-use crate::scene::BodyKind;
 
 /// Metres per slot, half the margin included.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Fields ready for lanes, and what they do to a block of bodies.
 
-use crate::integrate::BLOCK;
+use crate::column::BLOCK;
 use crate::lanes::{Lanes, Real};
 use crate::vec2::{Rot, Vec2};
 

@@ -3,9 +3,10 @@
 //! Order 1. Its amplitude on an oscillator grows by √(1 + (hω)²) per step: it has no stability limit
 //! because it is never stable. Source: Euler, Institutionum calculi integralis, 1768.
 
-use super::{Advance, Block, Scheme, Step, along};
+use super::{Advance, Scheme, Step, along};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct ExplicitEuler;
 

@@ -21,8 +21,6 @@
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
 
 mod explicit_euler;
-mod motion;
-mod plan;
 mod position_verlet;
 mod rk4;
 mod scheme;
@@ -30,37 +28,21 @@ mod semi_implicit_euler;
 mod velocity_verlet;
 mod yoshida4;
 
-use std::ops::Range;
-
 use crate::body::Bodies;
-use crate::column::Column;
+use crate::column::{BLOCK, Column};
 use crate::each::Each as _;
 use crate::force::{Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
+use crate::motion::{
+    Block, Chosen, Fast, FastBodies, Motion, Plan, STIR, Skipped, Warm, angular_acceleration, block,
+    block_starts, lanes_from, load_four, matter, starts_in, store_four, vectors,
+};
 use crate::settings::{Integrator, Skip};
 use crate::vec2::{Rot, Vec2};
 
-pub use motion::{Motion, Warm};
-pub use plan::Plan;
-pub use scheme::BLOCK;
-pub(crate) use scheme::{Advance, Block, Scheme, Step};
+pub(crate) use scheme::{Advance, Scheme, Step};
 
-use motion::{Chosen, load_four, store_four};
 use scheme::{ClosedForm, along, drift};
-
-/// A body that moved further in a step than it may unseen: where it began, and how far it went. 32 B in f32.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fast<R> {
-    /// Its slot.
-    pub slot: u32,
-    /// x, y (metres), cos, sin of the attitude as the step began.
-    pub start: [R; 4],
-    /// x, y (metres), angle (rad).
-    pub moved: [R; 3],
-}
-
-/// The fast bodies of a step, by slot; `None` where nobody asks.
-pub(crate) type FastBodies<'a, R> = Option<&'a mut Vec<Fast<R>>>;
 
 /// Notes the fast among the bodies of one lane value, before their poses change.
 #[inline(always)]
@@ -114,17 +96,6 @@ fn path_of<L: Lanes>(moved: [L; 3], radius: L) -> L {
     (moved[0].abs() + moved[1].abs()) + radius * moved[2].abs()
 }
 
-/// What the passes of this module left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Skipped {
-    /// Bodies whose scheme collapsed to its closed form.
-    pub closed_form: u64,
-    /// Bodies whose attitude was not touched.
-    pub rotation: u64,
-    /// Pairs that kept their manifold.
-    pub manifolds: u64,
-}
-
 /// The widest lanes of a scalar: see [`Plan::couples`].
 type Widest<L> = <<L as Lanes>::Elem as Real>::Widest;
 
@@ -173,50 +144,6 @@ pub fn predict<L: Lanes>(
     }
     with_scheme!(plan, predict_with(plan, bodies, motion, start));
     Skipped { closed_form: if plan.collapses() { bodies.live() as u64 } else { 0 }, ..Skipped::default() }
-}
-
-/// The block of a column that starts at lane value `at`.
-#[inline(always)]
-fn block<L: Lanes>(column: &Column<L::Elem>, at: usize) -> &[L; BLOCK] {
-    column.lanes::<L>()[at..at + BLOCK]
-        .try_into()
-        .unwrap_or_else(|_| unreachable!("columns are padded to whole blocks"))
-}
-
-/// Vectors from two blocks of coordinates.
-#[inline(always)]
-fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
-    crate::each::indexed(|i| Vec2::new(x[i], y[i]))
-}
-
-/// The lane values of the block that starts at one.
-fn lanes_from(start: usize) -> Range<usize> {
-    start..start + BLOCK
-}
-
-/// First lane value of each block in a run of slots.
-fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
-    (run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)).step_by(BLOCK)
-}
-
-/// First lane value of each block in some runs of slots.
-fn starts_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
-    runs.iter().cloned().flat_map(block_starts::<L>)
-}
-
-#[inline(always)]
-fn matter<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Matter<'_, L> {
-    let force = bodies.force.as_ref().map(|f| (block(&f[0], at), block(&f[1], at)));
-    Matter { inv_mass: block(&bodies.inv_mass, at), force }
-}
-
-#[inline(always)]
-fn angular_acceleration<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Option<[L; BLOCK]> {
-    let inv_inertia = block::<L>(&bodies.inv_inertia, at);
-    bodies.force.as_ref().map(|f| {
-        let torque = block::<L>(&f[2], at);
-        crate::each::indexed(|i| torque[i] * inv_inertia[i])
-    })
 }
 
 fn fly_with<L: Lanes, S: Scheme>(
@@ -423,10 +350,6 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
     motion.runs = runs;
     !(!doubtful.equals(L::zero())).any()
 }
-
-/// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
-/// errs by half the square of this at most, times the radius.
-pub const STIR: f64 = 4e-3;
 
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
 /// have gone further than [`STIR`] of their radius since they last did are noted as stirred, fast ones in `fast`.

@@ -4,8 +4,9 @@
 //! step. Source: Tuckerman, Berne, Martyna, J. Chem. Phys. 97 (1992) 1990.
 //! x₁ − x₀ = h·v₀ + ½h²·a is the same displacement, and exact to the bit under constant force.
 
-use super::{Advance, Block, Scheme, Step, along, drift};
+use super::{Advance, Scheme, Step, along, drift};
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct PositionVerlet;
 

@@ -7,8 +7,9 @@
 //! (k₁ + 2k₂ + 2k₃ + k₄)/6 = m + ⅔(n − m) with m = (k₁ + k₄)/2, n = (k₂ + k₃)/2, and
 //! h/6·(v₀ + 2v₂ + 2v₃ + v₄) = h·v₀ + ½h²·(k₁ + ((k₂ − k₁) + (k₃ − k₁))/3).
 
-use super::{Advance, Block, Scheme, Step, along, drift};
+use super::{Advance, Scheme, Step, along, drift};
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct Rk4;
 

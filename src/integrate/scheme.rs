@@ -1,13 +1,7 @@
 //! What an integrator is: a displacement and a new velocity for a block of bodies from (x, v) and the fields.
 
 use crate::lanes::{Lanes, Real};
-use crate::vec2::Vec2;
-
-/// Lane values a scheme advances together; fields are matched once for all of them.
-pub const BLOCK: usize = 4;
-
-/// A vector per body of a block.
-pub(crate) type Block<L> = [Vec2<L>; BLOCK];
+use crate::motion::Block;
 
 /// h, ½h and ½h² in lanes, seconds.
 #[derive(Clone, Copy, Debug)]

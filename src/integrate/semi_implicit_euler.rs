@@ -3,9 +3,10 @@
 //! Order 1, stable on an oscillator for hω < 2, energy bounded. Source: Hairer, Lubich, Wanner,
 //! Geometric Numerical Integration, I.1.2.
 
-use super::{Advance, Block, Scheme, Step, along};
+use super::{Advance, Scheme, Step, along};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct SemiImplicitEuler;
 

@@ -4,8 +4,9 @@
 //! hω < 2. Source: Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76 (1982) 637.
 //! Written as v₀ + h·(a₀ + (a₁ − a₀)/2) it is exact to the bit under constant force.
 
-use super::{Advance, Block, Scheme, Step, along, drift};
+use super::{Advance, Scheme, Step, along, drift};
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct VelocityVerlet;
 

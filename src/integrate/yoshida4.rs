@@ -7,8 +7,9 @@
 //! Stage k kicks by `d_k` h at time `c_k` h: (d) = (w₁, w₀, w₁), (c) = (w₁/2, ½, 1 − w₁/2). With Σd = 1
 //! and Σd(1 − c) = ½ the sums are written as a₁ plus deviations, which vanish under constant force.
 
-use super::{Advance, Block, Scheme, Step, along, drift};
+use super::{Advance, Scheme, Step, along, drift};
 use crate::lanes::Lanes;
+use crate::motion::Block;
 
 pub(super) struct Yoshida4;
 

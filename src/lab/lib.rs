@@ -3,12 +3,13 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`report`] | experiments, plots, tables, the page |
+//! | [`report`] | experiments, plots, the page |
 //! | [`accuracy`] | run time against error, case by case; settings for an error |
 //! | [`stress`] | what holds, and up to where |
 //! | [`gate`] | instruction counts against blessed ones |
-//! | [`cases`], [`reference`](mod@reference) | scenes with a reference, and what references are made of |
+//! | [`reference`](mod@reference), [`cases`] | what references are made of, and scenes with one |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
+//! | [`present`] | rows as tables, drawings, times, machines |
 //! | [`stamp`] | which build this is |
 //!
 //! It uses the engine's public interface and, to time single stages, [`lamina2d::internals`].
@@ -32,6 +33,7 @@
 pub mod accuracy;
 pub mod cases;
 pub mod gate;
+pub mod present;
 pub mod reference;
 pub mod report;
 pub mod stamp;

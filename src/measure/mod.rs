@@ -12,8 +12,8 @@ use serde::Serialize;
 use crate::body::Bodies;
 use crate::broad::BroadCounts;
 use crate::contact::Manifolds;
-use crate::integrate::Skipped;
 use crate::lanes::Real;
+use crate::motion::Skipped;
 use crate::settings::Skip;
 use crate::solve::Traits;
 

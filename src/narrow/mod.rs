@@ -246,15 +246,15 @@ impl<R: Real> Narrow<R> {
         crate::each::indexed(|k| (BUCKETS[k].0, BUCKETS[k].1, self.manifolds.bucket(k).len()))
     }
 
-    /// The places of the pairs last looked at.
-    pub fn looked_at(&self) -> impl Iterator<Item = u32> + '_ {
-        self.todo.iter().flat_map(|todo| &todo.place[..todo.len]).copied()
+    /// All manifolds, and the places of the pairs last looked at.
+    pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = u32>) {
+        (&mut self.manifolds, looked_at(&self.todo))
     }
 
     /// The deepest overlap of the pairs last looked at, negative, metres; 0 where there is none. Read out of what was
     /// found, as few steps ask (noted while looking it cost all of them 2 to 7 % of this phase).
     pub fn deepest(&self) -> f64 {
-        let places = self.looked_at().map(|place| place as usize);
+        let places = looked_at(&self.todo).map(|place| place as usize);
         let gaps = places.flat_map(|at| &self.manifolds.gaps()[at][..self.manifolds.code(at).points()]);
         gaps.fold(0.0, |least, gap| gap.to_f64().min(least))
     }
@@ -409,6 +409,10 @@ impl Todo {
         self.b[padding.clone()].fill(0);
         self.place[padding].fill(manifolds.spill());
     }
+}
+
+fn looked_at(todo: &[Todo; 6]) -> impl Iterator<Item = u32> {
+    todo.iter().flat_map(|todo| &todo.place[..todo.len]).copied()
 }
 
 /// Where the polygons of `WIDTH` bodies are; the world, in padding lanes, has polygon 0 and is masked away.

@@ -45,8 +45,8 @@ use super::constraint::inverse;
 use crate::column::Column;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
-use crate::integrate::Motion;
 use crate::lanes::{Lanes, ROW, Real};
+use crate::motion::Motion;
 use crate::vec2::Vec2;
 
 /// Rounds of bodies and contacts per substep.

@@ -7,11 +7,10 @@
 
 use std::ops::Range;
 
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::Real;
-use crate::scene::BodyKind;
 
 /// Colours a body can take part in: one bit each.
 pub(crate) const COLORS: usize = 64;

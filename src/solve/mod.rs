@@ -1,6 +1,6 @@
 //! Solvers: one per file, all on the same manifolds, joints, colours and streams of constraints.
 //!
-//! A solver changes velocities and displacements in the rows of [`crate::integrate::Motion`] and the impulses
+//! A solver changes velocities and displacements in the rows of [`crate::motion::Motion`] and the impulses
 //! in its constraints, nothing else. Contacts of one colour share no dynamic body, so the lanes of a batch never
 //! meet; static and kinematic bodies may occur in many lanes, but no mass moves them and their rows keep their values.
 //! `avbd` alone colours bodies instead, and works on the pairs.
@@ -50,8 +50,8 @@ pub(crate) mod stream;
 pub(crate) mod tower;
 mod xpbd;
 
-use crate::integrate::Plan;
 use crate::lanes::Real;
+use crate::motion::Plan;
 use crate::settings::{Skip, Skips, Solver};
 
 pub use solving::Solving;

@@ -27,13 +27,12 @@ use std::ops::Range;
 use super::constraint::Constraint;
 use super::stream::{Ends, Visit};
 use super::tower::{Touching, Towers};
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
-use crate::island::root;
 use crate::lanes::{Lanes, Real};
-use crate::scene::BodyKind;
+use crate::partition::Sets;
 
 use goal::{Island, aimed};
 
@@ -49,7 +48,7 @@ pub(crate) const TOWER_STEPS: u32 = 32;
 pub struct Paces<R: Real> {
     /// In use, ascending.
     substeps: Vec<u32>,
-    /// The slots each goes over, as [`crate::integrate::Motion::runs`].
+    /// The slots each goes over, as [`crate::motion::Motion::runs`].
     runs: Vec<Vec<Range<usize>>>,
     /// Substeps per slot; not empty only where islands are paced.
     of_slot: Vec<u32>,
@@ -63,7 +62,8 @@ pub struct Paces<R: Real> {
     towers: Towers,
     /// Bodies have come since the last look: what they stand on has hardly sagged yet.
     fresh: bool,
-    parent: Vec<u32>,
+    /// Islands, while they are looked for.
+    sets: Sets,
     /// Per root.
     islands: Vec<Island>,
     /// Substeps of all islands with joints.
@@ -83,7 +83,7 @@ impl<R: Real> Default for Paces<R> {
             tower_needs: Vec::new(),
             towers: Towers::default(),
             fresh: true,
-            parent: Vec::new(),
+            sets: Sets::default(),
             islands: Vec::new(),
             joined: None,
             steps: 0,
@@ -194,7 +194,7 @@ impl<R: Real> Paces<R> {
         let joined = self.common_of_joined(goal, looked);
         self.joined = Some(joined);
         for slot in runs.iter().cloned().flatten().filter(|&slot| bodies.kind(slot) == BodyKind::Dynamic) {
-            let at = root(&mut self.parent, slot as u32) as usize;
+            let at = self.sets.of(slot as u32) as usize;
             self.of_slot[slot] = match self.islands[at] {
                 Island { joined: true, .. } => joined,
                 Island { touches: false, .. } => goal.base,
@@ -235,19 +235,14 @@ impl<R: Real> Paces<R> {
         joints: impl Iterator<Item = [u32; 2]>,
         runs: &[Range<usize>],
     ) {
-        self.parent.resize(bodies.len(), 0);
+        self.sets.part(bodies.len(), runs);
         self.islands.clear();
         self.islands.resize(bodies.len(), Island::default());
-        for slot in runs.iter().cloned().flatten() {
-            self.parent[slot] = slot as u32;
-        }
         let is_dynamic = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
         let touching = manifolds.touching().iter().map(|&place| manifolds.slots(place as usize));
         for (ends, joined) in touching.map(|ends| (ends, false)).chain(joints.map(|ends| (ends, true))) {
-            let [a, b] = ends;
             if ends.into_iter().all(is_dynamic) {
-                let (a, b) = (root(&mut self.parent, a), root(&mut self.parent, b));
-                self.parent[a.max(b) as usize] = a.min(b);
+                self.sets.join(ends);
             }
             // Noted on bodies for now: their roots are known when all are joined.
             for end in ends {
@@ -257,7 +252,7 @@ impl<R: Real> Paces<R> {
         }
         for slot in runs.iter().cloned().flatten().filter(|&slot| is_dynamic(slot as u32)) {
             let own = self.islands[slot];
-            let at = root(&mut self.parent, slot as u32) as usize;
+            let at = self.sets.of(slot as u32) as usize;
             let island = &mut self.islands[at];
             let [now, last] = self.load.each_ref().each(|load| load[slot]);
             island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];

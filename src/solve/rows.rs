@@ -5,8 +5,8 @@ use super::constraint::{Constraint, Point};
 use super::stream::{Ends, Visit};
 use crate::contact::{ContactRow, Manifolds};
 use crate::each::Each as _;
-use crate::integrate::Motion;
 use crate::lanes::Lanes;
+use crate::motion::Motion;
 
 /// Reads batches out.
 struct Read<'a, L: Lanes, F> {

@@ -8,7 +8,7 @@
 //!
 //! * **Moving velocity.** A substep moves a body by h·u. The push works on u, the relaxation on the velocity v at
 //!   the substep's end. For schemes of order ≥ 2 an impulse changes u by half of what it changes v by, for Euler
-//!   by all of it ([`crate::integrate::Plan::impulse_share`]); so resting bodies neither float nor sink, and a block
+//!   by all of it ([`crate::motion::Plan::impulse_share`]); so resting bodies neither float nor sink, and a block
 //!   that slides stops where it should.
 //! * **Friction in the relaxation only**: friction that answers the push's velocities pumps tall stacks.
 //! * **Gaps.** A point apart by s > 0 may close by s in a substep, no more. The relaxation leaves points alone that
@@ -20,11 +20,8 @@ use super::stream::{Ends, Visit};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 
-/// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
-///
-/// Sag falls with its square, so the largest that stays calm. Measured at 4 substeps of 1/240 s: at 0.25 a pyramid
-/// of base 50 shakes for ever (54 J after 20 s), at 0.18 it rests (4e-6 J), at 0.125 too (2e-10 J) with twice the sag.
-pub const HERTZ_TIMES_SUBSTEP: f64 = 0.18;
+pub use crate::settings::HERTZ_TIMES_SUBSTEP;
+
 /// Where steps become shorter, contacts become stiffer by no more than this a step: made stiff at once, what has sagged
 /// by h² under long steps leaps up (a column of ten at 1/240 s after 1/10 s fell over).
 pub(crate) const STIFFENING: f64 = 0.97;

@@ -13,10 +13,9 @@ use super::{Task, avbd, carries_impulses, deep, impulse, pgs, pushes, xpbd};
 use crate::body::Bodies;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
-use crate::integrate::{Motion, Warm};
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
-use crate::narrow::Narrow;
+use crate::motion::{Motion, Warm};
 use crate::settings::Solver;
 
 /// Where today's gaps and impulses are.
@@ -176,22 +175,22 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Makes constraints of the manifolds found: all of them where the graph of contacts has changed, else those of
-    /// the pairs looked at.
+    /// the places looked at.
     pub fn prepare(
         &mut self,
         bodies: &Bodies<L::Elem>,
-        narrow: &mut Narrow<L::Elem>,
+        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = u32>),
         changed: bool,
         motion: &Motion<L::Elem>,
     ) {
         self.recut |= changed;
         if changed {
-            self.coloring.run(bodies, &mut narrow.manifolds);
-            self.stream.cut(&self.coloring, &narrow.manifolds, &self.paces);
+            self.coloring.run(bodies, manifolds);
+            self.stream.cut(&self.coloring, manifolds, &self.paces);
         } else {
-            narrow.looked_at().for_each(|place| self.stream.touch(place));
+            looked_at.for_each(|place| self.stream.touch(place));
         }
-        self.stream.begin(&narrow.manifolds, motion.matter.fours());
+        self.stream.begin(manifolds, motion.matter.fours());
         if self.latest != Latest::BeforeDisplacements {
             self.stream.age();
         }
@@ -207,9 +206,9 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// After bodies have come: notes how deep the deepest of the pairs last looked at is; later ones are looked at as a
-    /// step ends. `length`: the scene's median radius.
-    pub fn note_depth(&mut self, narrow: &Narrow<L::Elem>, length: f64) {
-        if std::mem::take(&mut self.deep.fresh) && narrow.deepest() < -deep::DEEP * length {
+    /// step ends. `deepest`: metres, negative; `length`: the scene's median radius.
+    pub fn note_depth(&mut self, deepest: impl FnOnce() -> f64, length: f64) {
+        if std::mem::take(&mut self.deep.fresh) && deepest() < -deep::DEEP * length {
             self.deep.steps = deep::STEPS;
         }
     }
@@ -219,12 +218,16 @@ impl<L: Lanes> Solving<L> {
         (self.latest, self.until_summed) = (Latest::InPairs, 0);
     }
 
-    /// Hands gaps and impulses of the pairs that will be looked at back to them, and of those whose constraints are
+    /// Hands gaps and impulses of the places that will be looked at back to them, and of those whose constraints are
     /// prepared along with them; `prepare` is to follow.
-    pub fn hand_back_chosen(&mut self, narrow: &mut Narrow<L::Elem>, motion: &Motion<L::Elem>) {
+    pub fn hand_back_chosen(
+        &mut self,
+        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = u32>),
+        motion: &Motion<L::Elem>,
+    ) {
         if self.latest != Latest::InPairs {
-            narrow.looked_at().for_each(|place| self.stream.touch(place));
-            self.stream.end_where(true, &mut narrow.manifolds, self.latest.yet_to_follow(motion));
+            looked_at.for_each(|place| self.stream.touch(place));
+            self.stream.end_where(true, manifolds, self.latest.yet_to_follow(motion));
         }
     }
 

@@ -18,10 +18,9 @@
 use super::constraint::Constraint;
 use super::pace::Goal;
 use super::stream::{Ends, Visit};
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
-use crate::scene::BodyKind;
 
 /// A body with joints has at least so many contacts: more than can be peeled off it.
 const JOINED: u32 = 1 << 30;

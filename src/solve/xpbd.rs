@@ -11,7 +11,7 @@
 //!
 //! * **Velocities.** v = Δx/h is kept up along with the corrections: a correction Δx changes v by Δx/(h·share),
 //!   where share is what an impulse changes the displacement by over h times what it changes the velocity by
-//!   ([`crate::integrate::Plan::impulse_share`]): ½ for schemes of order ≥ 2. A resting box ends at exactly 0 so, and
+//!   ([`crate::motion::Plan::impulse_share`]): ½ for schemes of order ≥ 2. A resting box ends at exactly 0 so, and
 //!   a body that touches nothing keeps the scheme's bits.
 //! * **Compliance** adds α·N of overlap under a load N: 0, the hardest, needs no warm start and is no dearer.
 //! * **What it cannot do.** One visit moves a load one contact down: under k equal boxes a contact sinks by about k·g·h²,

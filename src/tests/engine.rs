@@ -31,6 +31,7 @@ mod engine {
     mod oracle_narrow;
     mod paces;
     mod refusals;
+    mod rooms;
     mod scenes;
     mod shapes;
     mod sleep;

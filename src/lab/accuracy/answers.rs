@@ -11,7 +11,7 @@ use super::best::{Fastest, LEVELS, duration, fastest};
 use super::case::Method;
 use super::contact::mixes::growth;
 use super::sweep::{Results, Row};
-use crate::report::Record;
+use crate::present::Record;
 
 /// Courses are compared to this, metres.
 const TOLERANCE_M: f64 = 1e-2;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::best::{Fastest, LEVELS};
 use super::contact::Verdict;
 use super::sweep::{Results, Row};
-use crate::report::Record;
+use crate::present::Record;
 
 /// A method on a case.
 #[derive(Clone, Debug, Serialize)]

@@ -1,6 +1,6 @@
 //! The order a line of errors shows.
 
-use crate::report::fitted_exponent;
+use crate::present::fitted_exponent;
 
 /// An order is fitted over at least so many halvings.
 pub const MIN_HALVINGS: usize = 4;

@@ -8,7 +8,7 @@ use lamina2d::settings::{Precision, Settings};
 
 use super::best::{Cost, Profile, pareto};
 use super::sweep::{Results, Row};
-use crate::report::chart::{Area, PALETTE, around, plot, to_svg};
+use crate::present::chart::{Area, PALETTE, around, plot, to_svg};
 
 const SIZE: (u32, u32) = (1000, 560);
 /// For the legend, to the right of the curves.

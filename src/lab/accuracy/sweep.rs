@@ -14,7 +14,7 @@ use super::case::{Case, Expect, Method, Norm, Reference, Sweep};
 use super::contact::Trial;
 use super::norm::{Start, movable};
 use super::order::{Order, TOLERANCE};
-use crate::report::median;
+use crate::present::median;
 
 /// Copies of a single body that are timed together: a whole number of blocks at every width.
 pub const CROWD: usize = 64;

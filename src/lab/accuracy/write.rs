@@ -8,7 +8,7 @@ use serde_json::json;
 use super::best::{Cost, Fastest, LEVELS, profiles};
 use super::plot;
 use super::sweep::{Results, Row};
-use crate::report::Machine;
+use crate::present::Machine;
 
 /// A row with what the JSON leaves out.
 #[derive(Serialize)]

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context;
 use lamina::gate;
-use lamina::report::earlier::{self, Sweep};
 use lamina::report::peers::{self, Peers};
+use lamina::report::sweep::{self, Sweep};
 use lamina::report::{
     self, Data, EXPERIMENTS, Earlier, Experiment, Record, Stopped, Table, compare, instructions, readme,
     strip,
@@ -138,7 +138,7 @@ fn beside(args: &Args) -> anyhow::Result<Beside> {
     let stress = if args.stress.exists() { stress::write::read(&args.stress)? } else { Default::default() };
     let instructions =
         (last.map(instructions::rows).unwrap_or_default(), last.and_then(instructions::earlier));
-    let accuracy = args.accuracy.exists().then(|| earlier::read(&args.accuracy)).transpose()?;
+    let accuracy = args.accuracy.exists().then(|| sweep::read(&args.accuracy)).transpose()?;
     Ok(Beside { peers, instructions, stress, accuracy })
 }
 

@@ -7,8 +7,8 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::timing::{median, quantile};
 use super::{Data, Record};
+use crate::present::timing::{median, quantile};
 
 /// How rows of one table are matched, and which of their numbers are times or rates.
 struct Matched {

@@ -3,7 +3,6 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::earlier::{self, Earlier, Sweep};
 use super::experiments::{
     accuracy, broad_phase, contacts, determinism, flight, lanes, limits, matrix, recording, skips, sleep,
     stability,
@@ -11,9 +10,11 @@ use super::experiments::{
 use super::headline::{Headline, headlines};
 use super::peers::{self, Peers};
 use super::strip::Strip;
-use super::table::{Record, Table};
+use super::sweep::{self, Sweep};
 use super::{Machine, instructions};
 use crate::accuracy::Line;
+use crate::present::Earlier;
+use crate::present::table::{Record, Table};
 use crate::stress::{self, LimitLine, PassLine};
 
 /// Everything a report shows.
@@ -295,7 +296,7 @@ impl Data {
             Table::of(&self.limits)?,
             Table::of(&self.flight)?,
         ];
-        let accuracy = earlier::tables(&self.accuracy)?;
+        let accuracy = sweep::tables(&self.accuracy)?;
         let measured = own.into_iter().chain(accuracy).filter(|table| !table.raw.is_empty());
         Ok(measured.chain(self.earlier_accuracy.iter().flat_map(|sweep| sweep.tables.clone())).collect())
     }

@@ -5,8 +5,8 @@ use serde::Serialize;
 use lamina2d::settings::{Settings, Stepping};
 
 use super::experiments::matrix;
-use super::table::{Record, or_dash, times};
 use super::{Data, page};
+use crate::present::table::{Record, or_dash, times};
 
 /// One line of the result table.
 #[derive(Clone, Debug, Serialize)]

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::earlier::Earlier;
-use super::table::Record;
 use crate::gate::{Baseline, STEPS_PER_COUNT};
+use crate::present::Earlier;
+use crate::present::table::Record;
 
 /// One bench.
 #[derive(Clone, Debug, Serialize)]

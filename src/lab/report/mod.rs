@@ -5,12 +5,10 @@
 //! | [`experiments`] | what is measured, each a table of rows |
 //! | `data` | the list of experiments: what a report consists of |
 //! | `headline` | the result table |
-//! | [`earlier`] | where and when rows were measured that are not of this run |
+//! | [`sweep`] | an accuracy sweep of an earlier run |
 //! | `readme` | what the README repeats |
 //! | [`peers`] | what `lamina-peers` measured, read from its file |
 //! | [`instructions`] | what `lamina gate` holds, read from its file |
-//! | `machine` | where it was measured, and with which build |
-//! | `table` | rows as tables and CSV |
 //! | `plots` | SVG from rows |
 //! | [`strip`] | SVG of scenes at a few moments |
 //! | `page` | HTML and Markdown from tables and plots |
@@ -18,29 +16,22 @@
 
 pub mod compare;
 mod data;
-pub mod earlier;
 pub mod experiments;
 mod headline;
 pub mod instructions;
-mod machine;
 mod page;
 pub mod peers;
 mod plots;
 pub mod readme;
 pub mod strip;
-pub(crate) mod table;
-mod timing;
+pub mod sweep;
 
 use std::path::Path;
 
-pub(crate) use plots::chart;
-
 pub use data::{Data, EXPERIMENTS, Experiment, Stopped};
-pub use earlier::Earlier;
 pub use headline::Headline;
-pub use machine::Machine;
-pub use table::{Record, Table};
-pub use timing::{Timing, fitted_exponent, median};
+
+pub use crate::present::{Earlier, Machine, Record, Table, Timing, fitted_exponent, median};
 
 /// Writes the page (`index.html`, `summary.md`), each table as CSV, all as JSON, and the plots as SVG.
 ///
@@ -54,7 +45,7 @@ pub fn write(data: &Data, folder: &Path) -> anyhow::Result<()> {
         table.write_csv(std::fs::File::create(folder.join(format!("{}.csv", table.name)))?)?;
     }
     if !data.accuracy.lines.is_empty() {
-        earlier::write(&data.accuracy, &data.machine, folder)?;
+        sweep::write(&data.accuracy, &data.machine, folder)?;
     }
     let plots = plots::draw(data)?;
     for plot in &plots {

@@ -2,10 +2,10 @@
 
 use askama::Template;
 
-use super::earlier::Earlier;
 use super::plots::Plot;
 use super::{Data, Machine, Record, Table};
 use crate::accuracy::answers::MixLine;
+use crate::present::Earlier;
 use crate::stress::{self, PassLine};
 
 /// A part of the page: what it is about, then its plots and tables.

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::earlier::Earlier;
-use super::table::{Record, or_dash, times};
+use crate::present::Earlier;
+use crate::present::table::{Record, or_dash, times};
 
 /// The engine all others are compared with.
 const OURS: &str = "lamina2d";
@@ -114,7 +114,7 @@ impl Record for Row {
             self.scene.clone(),
             self.engine.clone(),
             self.threads.to_string(),
-            super::table::yes_no(self.sleep),
+            crate::present::table::yes_no(self.sleep),
             self.substeps.to_string(),
             format!("{:.4}", self.ms_per_step.min),
             format!("{:.4}", self.ms_per_step.median),
@@ -190,7 +190,7 @@ impl Record for Scene {
         vec![
             self.scene.clone(),
             self.threads.to_string(),
-            super::table::yes_no(self.sleep),
+            crate::present::table::yes_no(self.sleep),
             format!("{:.4}", self.ours_ms),
             or_dash(self.peers_ms[0].map(|ms| format!("{ms:.4}"))),
             or_dash(self.peers_ms[1].map(|ms| format!("{ms:.4}"))),

@@ -1,20 +1,18 @@
 //! SVG plots of a report's rows, and its strips of frames.
 
-pub(crate) mod chart;
+pub(crate) use std::borrow::Cow;
 
-use std::borrow::Cow;
-
-use chart::{Series, Slope, bars, heat_map, log_log, stacked};
+use crate::present::chart::{Series, Slope, bars, heat_map, log_log, stacked};
 
 use lamina2d::measure::Stage;
 use lamina2d::settings::Solver;
 
-use super::earlier::Earlier;
 use super::experiments::{accuracy, broad_phase, contacts, matrix, stability};
 use super::peers::{self, Peers};
 use super::strip::Strip;
 use super::{Data, Record, fitted_exponent};
 use crate::accuracy::Line;
+use crate::present::Earlier;
 
 /// One drawing.
 #[derive(Clone, Debug)]

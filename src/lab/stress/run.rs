@@ -8,7 +8,7 @@ use lamina2d::simulation::simulate;
 
 use super::case::{Case, Trial};
 use super::seen::{Metrics, Seen, Watch};
-use crate::report::Record;
+use crate::present::Record;
 
 /// A case with one solver: the rows of the JSON and CSV files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

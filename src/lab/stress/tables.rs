@@ -6,8 +6,8 @@ use lamina2d::settings::Solver;
 
 use super::run::Row;
 use super::table::CASES;
-use crate::report::Record;
-use crate::report::table::{or_dash, significant, yes_no};
+use crate::present::Record;
+use crate::present::table::{or_dash, significant, yes_no};
 
 /// What is shown side by side: solvers and substeps.
 const SHOWN: [(Solver, u32); 7] = [

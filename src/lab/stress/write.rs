@@ -9,8 +9,8 @@ use lamina2d::settings::Solver;
 
 use super::case::Case;
 use super::run::Row;
-use crate::report::chart::{Series, Slope, log_log};
-use crate::report::{Earlier, Machine, Table};
+use crate::present::chart::{Series, Slope, log_log};
+use crate::present::{Earlier, Machine, Table};
 
 /// What is smaller is drawn here: a share of nothing has no logarithm.
 const LEAST_SHARE: f64 = 1e-4;

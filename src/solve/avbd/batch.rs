@@ -1,10 +1,9 @@
 //! Bodies into batches: coloured so that no two of a batch touch, each with the contacts it visits.
 
 use super::{Avbd, Batch, COLORS};
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::contact::Manifolds;
 use crate::lanes::{Lanes, Real};
-use crate::scene::BodyKind;
 
 impl<L: Lanes> Avbd<L> {
     /// Colours the bodies that touch and lists their contacts; to be called when the graph of contacts has changed.

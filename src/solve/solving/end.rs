@@ -2,8 +2,8 @@
 
 use super::{Follow, Latest, Solving};
 use crate::contact::Manifolds;
-use crate::integrate::Motion;
 use crate::lanes::{Lanes, Real};
+use crate::motion::Motion;
 use crate::settings::Solver;
 use crate::solve::{Task, bounce, deep, soft};
 

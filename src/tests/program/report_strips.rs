@@ -3,9 +3,10 @@
 use std::process::Command;
 
 use assert_cmd::cargo::cargo_bin;
-use lamina::report::earlier::{Earlier, Sweep};
+use lamina::report::Earlier;
 use lamina::report::experiments::accuracy::Drawing;
 use lamina::report::strip::{SHOTS, Shot, Strip};
+use lamina::report::sweep::Sweep;
 use lamina::report::{self, Data, Table};
 use lamina2d::record::Recording;
 use lamina2d::scene::{BodyKind, ShapeSpec, by_name};
@@ -127,7 +128,6 @@ fn what_this_run_did_not_measure_says_so() {
         machine: of.clone(),
         tables: vec![table("fastest").of_run(Some(of.clone()))],
         answers: vec!["Nothing is free.".to_owned()],
-        smooth: Vec::new(),
         drawings: vec![drawing],
     };
     let written = |data: &Data| {

@@ -15,7 +15,7 @@ use lamina2d::scene::Scene;
 use lamina2d::settings::{Integrator, Precision, Settings, Solver};
 use lamina2d::simulation::{Simulation, simulate};
 
-use crate::report::median;
+use crate::present::median;
 
 use metric::Judge;
 pub use metric::Metric;

@@ -13,8 +13,8 @@ use lamina2d::scene::{Scene, mixes};
 use lamina2d::settings::{Integrator, Settings, Stepping};
 use lamina2d::simulation::simulate;
 
+use crate::present::table::{or_dash, yes_no};
 use crate::report::Record;
-use crate::report::table::{or_dash, yes_no};
 use crate::thesis::{ThesisIntegrator, ThesisWorld, Version};
 
 /// The thesis's durations, seconds.

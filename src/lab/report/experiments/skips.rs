@@ -8,7 +8,7 @@ use lamina2d::simulation::simulate;
 
 use super::Contestant;
 use crate::cases::by_name;
-use crate::report::table::yes_no;
+use crate::present::table::yes_no;
 use crate::report::{Record, median};
 
 /// One skip on one scene.

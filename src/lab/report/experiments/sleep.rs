@@ -10,7 +10,7 @@ use lamina2d::simulation::{Simulation, simulate};
 
 use super::DT_SECS;
 use crate::cases::by_name;
-use crate::report::table::or_dash;
+use crate::present::table::or_dash;
 use crate::report::{Record, median};
 
 /// One pile.

@@ -9,7 +9,7 @@ use lamina2d::simulation::{BodyState, simulate};
 
 use super::DT_SECS;
 use crate::cases::by_name;
-use crate::report::table::or_dash;
+use crate::present::table::or_dash;
 use crate::report::{Record, median};
 
 /// One solver with one number of substeps on one scene.

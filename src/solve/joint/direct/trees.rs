@@ -1,7 +1,6 @@
 //! Which pins make up trees whose masses are too far apart for visits, and in what order these are eliminated.
 
-use crate::each::Each as _;
-use crate::island::root;
+use crate::partition::Sets;
 
 /// Masses so far apart are too far for visits, in a tree of any size.
 const HARD_RATIO: f64 = 64.0;
@@ -18,9 +17,9 @@ pub(super) struct Trees {
     ends: Vec<[usize; 2]>,
     /// Pins on each slot, of bodies that move.
     on: Vec<Vec<usize>>,
-    /// The tree of each slot, by its root.
-    parent: Vec<u32>,
-    /// By root: a tree, and a hard one.
+    /// Whom pins join.
+    sets: Sets,
+    /// By the lowest slot of a set: a tree, and a hard one.
     wanted: Vec<bool>,
 }
 
@@ -32,24 +31,22 @@ impl Trees {
     ) -> Self {
         let ends: Vec<_> = ends.collect();
         let mut on = vec![Vec::new(); slots];
-        let mut parent: Vec<u32> = (0..slots as u32).collect();
+        let mut sets = Sets::default();
+        sets.part(slots, &[0..slots]);
         let mut wanted = vec![true; slots];
         for (k, &[a, b]) in ends.iter().enumerate() {
             for slot in [a, b].into_iter().filter(|&slot| moves(slot)) {
                 on[slot].push(k);
             }
             if moves(a) && moves(b) {
-                let [a, b] = [a, b].each(|slot| root(&mut parent, slot as u32) as usize);
-                if a == b {
-                    wanted[a] = false;
-                } else {
-                    let both = wanted[a] && wanted[b];
-                    parent[b] = a as u32;
-                    wanted[a] = both;
+                match sets.join([a as u32, b as u32]) {
+                    Some([low, high]) => wanted[low as usize] &= wanted[high as usize],
+                    // They hang together already: a loop, no tree.
+                    None => wanted[sets.of(a as u32) as usize] = false,
                 }
             }
         }
-        Self { ends, on, parent, wanted }
+        Self { ends, on, sets, wanted }
     }
 
     /// Leaves those alone whose masses are near each other.
@@ -57,7 +54,7 @@ impl Trees {
         let mut spans = vec![[f64::INFINITY, 0.0f64]; self.on.len()];
         let mut pins = vec![0.0f64; self.on.len()];
         for slot in (0..self.on.len()).filter(|&slot| moves(slot) && !self.on[slot].is_empty()) {
-            let tree = root(&mut self.parent, slot as u32) as usize;
+            let tree = self.sets.of(slot as u32) as usize;
             let span = &mut spans[tree];
             *span = [span[0].min(inv_mass(slot)), span[1].max(inv_mass(slot))];
             self.wanted[tree] &= self.on[slot].len() <= MOST_PINS;
@@ -76,7 +73,7 @@ impl Trees {
         let mut seen = vec![false; self.ends.len()];
         let mut orders = Vec::new();
         for slot in 0..self.on.len() {
-            let is_root = root(&mut self.parent, slot as u32) as usize == slot;
+            let is_root = self.sets.of(slot as u32) as usize == slot;
             if !is_root || !self.wanted[slot] || self.on[slot].is_empty() {
                 continue;
             }

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use crate::body::Bodies;
+use super::Bodies;
 use crate::lanes::Real;
 use crate::vec2::{Rot, Vec2};
 

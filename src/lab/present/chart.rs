@@ -7,7 +7,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::report::table::significant;
+use crate::present::table::significant;
 
 const SIZE: (u32, u32) = (760, 460);
 /// Distinct for the common kinds of colour blindness (Okabe and Ito, 2008).
@@ -155,7 +155,7 @@ fn bar_chart<'a, 'b>(
 }
 
 /// Groups of bars: for each label one bar per series.
-pub(super) fn bars(
+pub(crate) fn bars(
     title: &str,
     y_label: &str,
     labels: &[String],
@@ -180,7 +180,7 @@ pub(super) fn bars(
 }
 
 /// For each label one bar, its series on top of each other.
-pub(super) fn stacked(
+pub(crate) fn stacked(
     title: &str,
     y_label: &str,
     labels: &[String],
@@ -209,7 +209,7 @@ pub(super) fn stacked(
 }
 
 /// Numbers as shades, with the numbers written into them; `values[row][column]`.
-pub(super) fn heat_map(
+pub(crate) fn heat_map(
     title: &str,
     columns: &[String],
     rows: &[String],

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::earlier::Earlier;
+use super::Earlier;
 
 /// A row of an experiment, and how a reader sees a table of such rows.
 pub trait Record: Serialize {
@@ -138,7 +138,7 @@ fn flatten(key: &str, value: &Value, cells: &mut Vec<(String, String)>) {
 }
 
 /// `12.3×`, or a dash where there is nothing to compare with.
-pub(super) fn times(ratio: Option<f64>) -> String {
+pub(crate) fn times(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "–".to_owned(), |r| format!("{r:.1}×"))
 }
 

@@ -35,7 +35,7 @@ pub fn median(samples: &[f64]) -> f64 {
 }
 
 /// What so large a share of the samples does not exceed; NaN where there are none.
-pub(super) fn quantile(samples: &[f64], share: f64) -> f64 {
+pub(crate) fn quantile(samples: &[f64], share: f64) -> f64 {
     Data::new(samples.to_vec()).quantile(share)
 }
 

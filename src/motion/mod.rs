@@ -1,22 +1,57 @@
-//! A step in progress: what bodies have moved so far, one substep's prediction, and the rows solvers work on.
+//! A step in progress: what bodies have moved so far, one substep's prediction, and the rows solvers work on. What
+//! integration leaves for the stages around it, so that none of them imports another's work.
+
+mod blocks;
+mod plan;
 
 use std::ops::Range;
 
-use super::{BLOCK, Plan, angular_acceleration, block, matter, starts_in, vectors};
 use crate::body::Bodies;
-use crate::column::{Column, PAD};
+use crate::column::{BLOCK, Column, PAD};
 use crate::force::acceleration;
-use crate::lanes::{IN_ORDER, Lanes, Real};
+use crate::lanes::{Lanes, Real};
+
+pub(crate) use blocks::*;
+pub use plan::Plan;
+
+/// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
+/// errs by half the square of this at most, times the radius.
+pub const STIR: f64 = 4e-3;
+
+/// What a step's passes left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Skipped {
+    /// Bodies whose scheme collapsed to its closed form.
+    pub closed_form: u64,
+    /// Bodies whose attitude was not touched.
+    pub rotation: u64,
+    /// Pairs that kept their manifold.
+    pub manifolds: u64,
+}
+
+/// A body that moved further in a step than it may unseen: where it began, and how far it went. 32 B in f32.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fast<R> {
+    /// Its slot.
+    pub slot: u32,
+    /// x, y (metres), cos, sin of the attitude as the step began.
+    pub start: [R; 4],
+    /// x, y (metres), angle (rad).
+    pub moved: [R; 3],
+}
+
+/// The fast bodies of a step, by slot; `None` where nobody asks.
+pub(crate) type FastBodies<'a, R> = Option<&'a mut Vec<Fast<R>>>;
 
 /// Columns of a step in progress: what bodies moved so far, and one substep's prediction.
 #[derive(Clone, Debug)]
 pub struct Motion<R: Real> {
     /// Displacement since the step began, the last substep's left out: x, y (metres), angle (rad).
-    pub(super) total: [Column<R>; 3],
+    pub(crate) total: [Column<R>; 3],
     /// Velocity after the scheme, before contacts: x, y, angular.
-    pub(super) free: [Column<R>; 3],
+    pub(crate) free: [Column<R>; 3],
     /// The scheme's displacement in this substep: x, y, angle.
-    pub(super) ahead: [Column<R>; 3],
+    pub(crate) ahead: [Column<R>; 3],
     /// Rows of four per slot, what a solver gathers and scatters: vx, vy, ω, 1/m; before the first substep what
     /// the warm start adds to velocities; during a push the moving velocity.
     pub velocity: Column<R>,
@@ -27,7 +62,7 @@ pub struct Motion<R: Real> {
     /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
     pub acceleration: Column<R>,
     /// Path since the body last stirred, turning counted at the bounding radius, metres.
-    pub(super) drift: Column<R>,
+    pub(crate) drift: Column<R>,
     /// Slots of bodies whose manifolds are to be found anew.
     pub stirred: Vec<bool>,
     /// Is there one?
@@ -82,14 +117,14 @@ impl<R: Real> Default for Motion<R> {
 
 /// Which lanes a pass over one pace changes: its bodies and, in all, those without mass. The others keep their rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Chosen<L: Lanes> {
-    pub(super) moves: L::Mask,
-    pub(super) massless: L::Mask,
+pub(crate) struct Chosen<L: Lanes> {
+    pub(crate) moves: L::Mask,
+    pub(crate) massless: L::Mask,
 }
 
 impl<L: Lanes> Chosen<L> {
     #[inline(always)]
-    pub(super) fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
+    pub(crate) fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
         let massless = inv_mass.le(L::zero());
         Self { moves: paces.lanes::<L>()[at].equals(L::splat(pace)) | massless, massless }
     }
@@ -195,16 +230,4 @@ impl<R: Real> Motion<R> {
             }
         }
     }
-}
-
-/// `WIDTH` consecutive rows of four, transposed.
-#[inline(always)]
-pub(super) fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
-    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
-}
-
-/// The inverse of [`load_four`].
-#[inline(always)]
-pub(super) fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
-    L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
 }

@@ -1,0 +1,68 @@
+//! Columns and rows as blocks of lane values.
+
+use std::ops::Range;
+
+use crate::body::Bodies;
+use crate::column::{BLOCK, Column};
+use crate::force::Matter;
+use crate::lanes::{IN_ORDER, Lanes};
+use crate::vec2::Vec2;
+
+/// A vector per body of a block.
+pub(crate) type Block<L> = [Vec2<L>; BLOCK];
+
+/// The block of a column that starts at lane value `at`.
+#[inline(always)]
+pub(crate) fn block<L: Lanes>(column: &Column<L::Elem>, at: usize) -> &[L; BLOCK] {
+    column.lanes::<L>()[at..at + BLOCK]
+        .try_into()
+        .unwrap_or_else(|_| unreachable!("columns are padded to whole blocks"))
+}
+
+/// Vectors from two blocks of coordinates.
+#[inline(always)]
+pub(crate) fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
+    crate::each::indexed(|i| Vec2::new(x[i], y[i]))
+}
+
+/// The lane values of the block that starts at one.
+pub(crate) fn lanes_from(start: usize) -> Range<usize> {
+    start..start + BLOCK
+}
+
+/// First lane value of each block in a run of slots.
+pub(crate) fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
+    (run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)).step_by(BLOCK)
+}
+
+/// First lane value of each block in some runs of slots.
+pub(crate) fn starts_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
+    runs.iter().cloned().flat_map(block_starts::<L>)
+}
+
+#[inline(always)]
+pub(crate) fn matter<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Matter<'_, L> {
+    let force = bodies.force.as_ref().map(|f| (block(&f[0], at), block(&f[1], at)));
+    Matter { inv_mass: block(&bodies.inv_mass, at), force }
+}
+
+#[inline(always)]
+pub(crate) fn angular_acceleration<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize) -> Option<[L; BLOCK]> {
+    let inv_inertia = block::<L>(&bodies.inv_inertia, at);
+    bodies.force.as_ref().map(|f| {
+        let torque = block::<L>(&f[2], at);
+        crate::each::indexed(|i| torque[i] * inv_inertia[i])
+    })
+}
+
+/// `WIDTH` consecutive rows of four, transposed.
+#[inline(always)]
+pub(crate) fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
+    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
+}
+
+/// The inverse of [`load_four`].
+#[inline(always)]
+pub(crate) fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
+    L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);
+}
