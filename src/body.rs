@@ -403,7 +403,7 @@ impl<R: Real> Bodies<R> {
         !self.drives.is_empty()
     }
 
-    /// Gives the bodies with a pivot the velocities of a step of `dt_secs`; see [`crate::drive`].
+    /// Gives the bodies with a pivot the velocities of a step of `dt_secs`; see `body/drive.rs`.
     pub fn drive(&mut self, dt_secs: f64) {
         if !self.drives.is_empty() {
             // Out for the while, so that it may write to the columns beside it.

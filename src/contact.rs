@@ -92,7 +92,7 @@ pub struct Manifolds<R: Real> {
     now: PairTable<R>,
     before: PairTable<R>,
     /// Contacts of what sleeps.
-    rest: rest::Rest<R>,
+    rest: rest::SleepingContacts<R>,
     bucket_of: Vec<u8>,
     /// Places of the pairs that touch, ascending.
     touching: Vec<u32>,
@@ -105,7 +105,7 @@ impl<R: Real> Default for Manifolds<R> {
         Self {
             now: PairTable::default(),
             before: PairTable::default(),
-            rest: rest::Rest::default(),
+            rest: rest::SleepingContacts::default(),
             bucket_of: Vec::new(),
             touching: Vec::new(),
             changed: false,
@@ -116,7 +116,7 @@ impl<R: Real> Default for Manifolds<R> {
 impl<R: Real> Manifolds<R> {
     /// Takes a new list of pairs; `bucket(pair)` names each one's bucket and puts its body A first. What pairs
     /// of the last list keep is taken over.
-    pub fn deal(&mut self, pairs: &[[u32; 2]], bucket: impl Fn([u32; 2]) -> (usize, [u32; 2])) {
+    pub fn rebuild(&mut self, pairs: &[[u32; 2]], bucket: impl Fn([u32; 2]) -> (usize, [u32; 2])) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.bucket_of.clear();
         let mut counts = [0; 6];

@@ -75,7 +75,7 @@ impl<R: Real> Continuous<R> {
 
     /// Moves the fast bodies of a step of `dt_secs` back to where they meet something. `skin_m`: what counts as
     /// touching, metres; `margin`: gaps the solver hears of; `apart`: pairs that do not collide, ordered; bodies moved
-    /// back are marked in `stirred`.
+    /// back are marked in `has_moved`.
     pub(crate) fn stop(
         &mut self,
         bodies: &mut Bodies<R>,
@@ -83,7 +83,7 @@ impl<R: Real> Continuous<R> {
         margin: R,
         dt_secs: f64,
         apart: &[[u32; 2]],
-        stirred: &mut [bool],
+        has_moved: &mut [bool],
     ) {
         if self.fast.is_empty() {
             return;
@@ -122,7 +122,7 @@ impl<R: Real> Continuous<R> {
             }
             if let Some((t, obstacle)) = first {
                 put(bodies, fast, sweep.x, t, &obstacle);
-                stirred[slot] = true;
+                has_moved[slot] = true;
             }
         }
     }

@@ -14,10 +14,10 @@ pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
 pub use crate::column::BLOCK;
 pub use crate::integrate::{advance, fly, predict};
 pub use crate::island::Islands;
-pub use crate::motion::{Motion, Plan, STIR, Warm};
-pub use crate::narrow::{Narrow, Stirred};
+pub use crate::motion::{CONTACT_REUSE_DISTANCE, Motion, Plan, Warm};
+pub use crate::narrow::{MovedBodies, Narrow};
 pub use crate::solve::soft::{HERTZ_TIMES_SUBSTEP, PUSH_CAP};
-pub use crate::solve::{Solving, Task, Traits, carries_impulses, pushes};
+pub use crate::solve::{SceneNeeds, SolverContext, Solving, carries_impulses, pushes};
 
 /// Why a scene did not get to where it was to be.
 pub type Failed = Box<dyn std::error::Error + Send + Sync>;

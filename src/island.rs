@@ -33,7 +33,7 @@ use crate::partition::Sets;
 /// All bodies of an island must have been quiet for so long before it falls asleep.
 pub(crate) const QUIET_SECS: f64 = 0.5;
 /// Below this speed, in bounding radii per second, a body is quiet: in [`QUIET_SECS`] it then goes no further than
-/// a manifold is held to be unchanged ([`crate::motion::STIR`]).
+/// a manifold is held to be unchanged ([`crate::motion::CONTACT_REUSE_DISTANCE`]).
 ///
 /// Measured (largest speed of any body per half second): pyramid/10 falls below 1 mm/s in 2 s, pyramid/20 below 5
 /// mm/s in 4.5 s, polygons/150 below 2 mm/s in 8 s, rain/200 and cards/3 likewise, all of them decaying towards 0;
@@ -42,7 +42,7 @@ pub(crate) const QUIET_SECS: f64 = 0.5;
 ///
 /// `pgs` leaves a resting body ½gh of velocity, 2 cm/s with the defaults, which its next step takes away: under it
 /// nothing of ordinary size falls asleep.
-const QUIET_RADII_PER_SEC: f64 = crate::motion::STIR / QUIET_SECS;
+const QUIET_RADII_PER_SEC: f64 = crate::motion::CONTACT_REUSE_DISTANCE / QUIET_SECS;
 /// And below what gravity gives in so many seconds: large bodies and weak gravity take their time to begin a fall.
 const QUIET_FALL_SECS: f64 = 1e-3;
 
@@ -59,7 +59,7 @@ use trait_bits::{DRIFTING, RESTLESS, SUPPORTED};
 
 /// Whether islands are worth a look after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tired {
+pub struct QuietTime {
     /// Some dynamic body has been quiet for [`QUIET_SECS`].
     pub some: bool,
     /// One has been so since this step.
@@ -284,20 +284,20 @@ impl<R: Real> Islands<R> {
     }
 
     /// Reckons how long bodies in `runs` have been quiet, a step of `dt_secs` under `gravity` (m/s²) done.
-    pub fn tire<L: Lanes<Elem = R>>(
+    pub fn accumulate_quiet_time<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
         runs: &[Range<usize>],
         dt_secs: f64,
         gravity: f64,
-    ) -> Tired {
+    ) -> QuietTime {
         let (zero, dt, window) = (L::zero(), L::lit(dt_secs), L::lit(QUIET_SECS));
         let per_sec = L::lit(QUIET_RADII_PER_SEC);
         let fall = if gravity > 0.0 { L::lit(QUIET_FALL_SECS * gravity) } else { L::splat(R::FAR) };
         let columns = [&bodies.vx, &bodies.vy, &bodies.w, &bodies.radius, &bodies.inv_mass];
         let columns = columns.each(Column::lanes::<L>);
         let times = self.quiet_secs.lanes_mut::<L>();
-        let mut tired = Tired::default();
+        let mut tired = QuietTime::default();
         for at in runs.iter().flat_map(|run| run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)) {
             let [vx, vy, w, radius, inv_mass] = columns.each(|column| column[at]);
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
@@ -332,7 +332,7 @@ impl<R: Real> Islands<R> {
             let bits = self.bits[root];
             let rests = bits & SUPPORTED != 0 || !(fields || bits & DRIFTING != 0);
             if bits & RESTLESS == 0 && rests {
-                self.lay_down(bodies, slot, root);
+                self.put_to_sleep(bodies, slot, root);
             }
         }
     }
@@ -370,7 +370,7 @@ impl<R: Real> Islands<R> {
         }
     }
 
-    fn lay_down(&mut self, bodies: &mut Bodies<R>, slot: usize, root: usize) {
+    fn put_to_sleep(&mut self, bodies: &mut Bodies<R>, slot: usize, root: usize) {
         // Slots ascend and a root is the lowest: it always begins its ring.
         if slot == root {
             self.next[slot] = slot as u32;

@@ -37,7 +37,7 @@
 //! |---|---|---|
 //! | drive | pose of bodies with a pivot | their velocity |
 //! | broad | position, bounding radius, attitude of long bodies; velocity where something is fast | candidate pairs, a < b, in order |
-//! | narrow, where bodies have stirred | pose, shape, pairs; velocity where something is fast | manifolds, polygons' world rows |
+//! | narrow, where bodies have moved | pose, shape, pairs; velocity where something is fast | manifolds, polygons' world rows |
 //! | prepare, where manifolds are new | manifolds, their impulses, masses | colours, batches, constraints |
 //! | joints | pose; joints where they have changed | arms, gaps and angles; batches |
 //! | begin | constraints, velocity | warm start per body, approaches that will bounce |
@@ -45,13 +45,13 @@
 //! | per substep: solve | constraints of joints (hard trees at once), then of contacts, rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
 //! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
-//! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who stirred, who is fast |
+//! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who moved, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
 //! | measure | pose, velocity | finite check, counts; with bounds on speed or energy: those |
-//! | doze (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
+//! | update_sleep (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
 //!
 //! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
-//! stirred since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
+//! moved since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
 //! and the warm start are still in place. With [`settings::Settings::sleep`] a step goes over blocks and pairs that
 //! hold something awake, and where nothing is it ends after drive ([`island`]).
 //!
@@ -81,9 +81,9 @@
 //! | lever | state |
 //! |---|---|
 //! | bytes per contact | 88 with two points (goal 96), 68 with one (goal 48 for circles: masses, both levers and places would have to go); friction is one row per contact, not per point |
-//! | warm start per body | kept: one pass over contacts per step instead of one per substep, none while nothing stirs |
-//! | nothing stirred, nothing redone | 239,000 → 171,000: gaps and impulses stay in the constraints, manifolds are not looked at; 178,000 since islands and paces came: 69 per contact and push, 50 per contact and relaxation |
-//! | little stirred, little redone | polygons/10000 with 100 of 26,000 pairs to look at: only constraints beside those are handed back and prepared, 1.99 → 1.70 ms |
+//! | warm start per body | kept: one pass over contacts per step instead of one per substep, none while nothing moves |
+//! | nothing moved, nothing redone | 239,000 → 171,000: gaps and impulses stay in the constraints, manifolds are not looked at; 178,000 since islands and substep groups came: 69 per contact and push, 50 per contact and relaxation |
+//! | little moved, little redone | polygons/10000 with 100 of 26,000 pairs to look at: only constraints beside those are handed back and prepared, 1.99 → 1.70 ms |
 //! | slots checked once per visit | 239,000 → 215,000 together with closures the compiler had left as calls |
 //! | narrow and broad phase in lanes | kept; manifolds are coded as numbers, so that a batch is written without a branch per lane |
 //! | colours kept between steps | kept for a steady order, not for time: colouring anew where contacts change costs as much (pyramid/100 prepare 0.73 and 0.76 ms against 0.63 and 0.80, polygons/10000 falling 1.47 and 1.55 against 1.25 and 1.65) and needs 1 to 3 colours fewer; the cut into batches is what it costs, all of them where one contact comes or goes |

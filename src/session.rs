@@ -134,7 +134,10 @@ impl Session {
     /// # Errors
     /// Those of [`simulate`].
     pub fn new(scene: &Scene, settings: Settings) -> Result<Self, WorldError> {
-        Ok(Self { world: simulate(scene, settings)?, events: Vec::new(), pull: None })
+        let mut world = simulate(scene, settings)?;
+        // Who watches a session looks at single steps.
+        world.time_every_step();
+        Ok(Self { world, events: Vec::new(), pull: None })
     }
 
     /// The world.

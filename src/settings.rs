@@ -139,7 +139,7 @@ named_enum! {
     Restitution = "restitution",
     /// A list of candidate pairs is found with a skin and serves until a body has moved half of it.
     PairList = "pair_list",
-    /// A pair whose bodies have hardly moved keeps its manifold; see [`crate::motion::STIR`] for the bound.
+    /// A pair whose bodies have hardly moved keeps its manifold; see [`crate::motion::CONTACT_REUSE_DISTANCE`] for the bound.
     ManifoldReuse = "manifold_reuse",
 }
 
@@ -266,6 +266,13 @@ pub enum SettingsError {
     },
 }
 
+impl Precision {
+    /// The precision of a scalar.
+    pub fn of<R: Real>() -> Self {
+        if R::NAME == Self::F64.name() { Self::F64 } else { Self::F32 }
+    }
+}
+
 /// What a run may choose; written down as in scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -292,12 +299,12 @@ pub struct Settings {
     pub continuous: bool,
     /// Islands of bodies at rest fall asleep; see [`crate::island`].
     pub sleep: bool,
-    /// Each island has as many substeps as keep its contacts from sagging by more, metres; see [`crate::solve::pace`].
+    /// Each island has as many substeps as keep its contacts from sagging by more, metres; see [`crate::solve::substep_group`].
     /// `substeps` is then what bodies have that touch nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_sag: Option<f64>,
     /// All islands have `substeps`, slender stacks too, which `soft` else gives as many as keep them from buckling; see
-    /// [`crate::solve::tower`].
+    /// [`crate::solve::slender_stack`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub fixed_substeps: bool,
     /// Stiffness of soft contacts, hz·h: their frequency as a share of the substep rate, over 0 up to

@@ -47,6 +47,13 @@ pub trait Simulation: Send {
     /// # Errors
     /// Those of [`World::step`].
     fn step(&mut self, dt_secs: f64) -> Result<(), StepError>;
+    /// Advances by the step of its settings.
+    ///
+    /// # Errors
+    /// Those of [`World::step`].
+    fn advance(&mut self) -> Result<(), StepError> {
+        self.step(self.settings().dt_secs)
+    }
     /// The settings.
     fn settings(&self) -> &Settings;
     /// Steps taken.
@@ -67,6 +74,8 @@ pub trait Simulation: Send {
     fn times(&self) -> StageTimes;
     /// Sets stage times to zero.
     fn reset_times(&mut self);
+    /// From now on every step is timed; see [`World::time_every_step`].
+    fn time_every_step(&mut self);
     /// Hash of pose and velocity columns.
     fn hash(&self) -> u64;
     /// Energy and momentum.
@@ -252,6 +261,9 @@ where
     }
     fn reset_times(&mut self) {
         self.reset_times();
+    }
+    fn time_every_step(&mut self) {
+        self.time_every_step();
     }
     fn hash(&self) -> u64 {
         self.hash()

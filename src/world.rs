@@ -2,11 +2,10 @@
 
 mod access;
 mod error;
+mod inspect;
 mod sleep;
 mod snapshot;
 mod watchdog;
-
-use std::time::Instant;
 
 use crate::body::Bodies;
 use crate::broad::{BroadCounts, BroadPhase};
@@ -16,13 +15,13 @@ use crate::integrate;
 use crate::island::Islands;
 use crate::joint::{JointError, Joints};
 use crate::lanes::{Lanes, Real};
-use crate::measure::{Counts, Stage, StageTimes, first_non_finite, non_finite_in};
+use crate::measure::{Counts, Stage, Stopwatch, first_non_finite, non_finite_in};
 use crate::motion::{Motion, Plan, Skipped, Warm};
-use crate::narrow::{Narrow, Stirred};
+use crate::narrow::{MovedBodies, Narrow};
 use crate::scene::{Scene, SceneError};
-use crate::settings::{Settings, Skip};
-use crate::solve::pace::Goal;
-use crate::solve::{self, Solving, Task, Traits};
+use crate::settings::{Precision, Settings, Skip};
+use crate::solve::substep_group::Goal;
+use crate::solve::{self, SceneNeeds, SolverContext, Solving};
 
 use watchdog::Watchdog;
 
@@ -33,7 +32,7 @@ pub use watchdog::EVERY as WATCHED_EVERY;
 /// What a step found before bodies move.
 struct Seen {
     found: BroadCounts,
-    /// Nothing has stirred since manifolds were found.
+    /// Nothing has moved since manifolds were found.
     still: bool,
     /// Pairs.
     looked_at: usize,
@@ -49,7 +48,7 @@ pub struct World<L: Lanes> {
     forces: Forces,
     settings: Settings,
     fields: Vec<Field<L::Elem>>,
-    traits: Traits,
+    needs: SceneNeeds,
     /// Revision and removals of the bodies last looked over.
     inspected: Option<(u64, u64)>,
     /// Revision of the joints last looked over.
@@ -62,7 +61,7 @@ pub struct World<L: Lanes> {
     /// Poses may have changed by other hands than a step's: no manifold may be reused.
     disturbed: bool,
     /// The broad phase has a list the narrow phase has not taken yet.
-    undealt: bool,
+    pairs_outdated: bool,
     /// Who sleeps; left alone without [`Settings::sleep`].
     islands: Islands<L::Elem>,
     /// Who is awake has changed since pairs were last sorted by it.
@@ -76,7 +75,7 @@ pub struct World<L: Lanes> {
     /// Since the world began, seconds.
     time_secs: f64,
     counts: Counts,
-    times: StageTimes,
+    stopwatch: Stopwatch,
 }
 
 impl<L: Lanes> World<L> {
@@ -101,7 +100,7 @@ impl<L: Lanes> World<L> {
     }
 
     /// A world around existing bodies and the joints between them; those of which a body is gone go with the first
-    /// step.
+    /// step. Lanes and precision of its settings are those of its type.
     ///
     /// # Errors
     /// Settings or fields that cannot be run with.
@@ -111,6 +110,8 @@ impl<L: Lanes> World<L> {
         forces: Forces,
         settings: Settings,
     ) -> Result<Self, WorldError> {
+        // The type has decided; settings that came from elsewhere must not say otherwise.
+        let settings = Settings { lanes: L::WIDTH, precision: Precision::of::<L::Elem>(), ..settings };
         settings.check()?;
         forces.check_in::<L::Elem>().map_err(SceneError::from)?;
         forces.check_coupling(bodies.len(), &settings).map_err(SceneError::from)?;
@@ -122,7 +123,7 @@ impl<L: Lanes> World<L> {
             forces,
             settings,
             fields: Vec::new(),
-            traits: Traits::default(),
+            needs: SceneNeeds::default(),
             inspected: None,
             inspected_joints: 0,
             broad: BroadPhase::default(),
@@ -131,7 +132,7 @@ impl<L: Lanes> World<L> {
             motion: Motion::default(),
             continuous: Continuous::default(),
             disturbed: true,
-            undealt: true,
+            pairs_outdated: true,
             islands: Islands::default(),
             regrouped: false,
             groupings: 0,
@@ -140,11 +141,13 @@ impl<L: Lanes> World<L> {
             steps: 0,
             time_secs: 0.0,
             counts: Counts::default(),
-            times: StageTimes::default(),
+            stopwatch: Stopwatch::default(),
         })
     }
 
-    /// A world with the bodies and joints of a scene, in their order: the k-th body is in slot k + 1.
+    /// A world with the bodies and joints of a scene, in their order: the k-th body is in slot k + 1. Lanes and precision of
+    /// its settings are those of its type, whatever `settings` say; their step is that of `settings`, not the scene's
+    /// (which [`load`](crate::scene::load) puts there).
     ///
     /// # Errors
     /// Settings, fields, bodies or joints that cannot be run with.
@@ -163,7 +166,7 @@ impl<L: Lanes> World<L> {
         Ok(world)
     }
 
-    /// Advances by `dt_secs`: the whole frame, top to bottom.
+    /// Advances by `dt_secs`, which is the step of its settings from then on: the whole frame, top to bottom.
     ///
     /// # Errors
     /// A step that is not positive and finite (nothing changes); a state that turned NaN or infinite
@@ -173,6 +176,7 @@ impl<L: Lanes> World<L> {
         if !(rounded > L::Elem::ZERO && rounded.is_finite()) {
             return Err(StepError::Dt(dt_secs));
         }
+        self.settings.dt_secs = dt_secs;
         self.inspect();
         self.begin_watch();
         self.bodies.drive(dt_secs);
@@ -180,13 +184,14 @@ impl<L: Lanes> World<L> {
         let begun_secs = self.time_secs;
         self.time_secs += dt_secs;
         if self.settings.sleep && self.rests() {
+            self.stopwatch.rest(self.bodies.live());
             return Ok(());
         }
-        let mut clock = Instant::now();
+        self.stopwatch.begin(self.bodies.live());
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
-        let traits = self.traits.needed(skips);
+        let needs = self.needs.needed(skips);
 
-        let seen = self.find_contacts(traits, rounded, &mut clock);
+        let seen = self.find_contacts(needs, rounded);
         let mut fields = std::mem::take(&mut self.fields);
         for field in &mut fields {
             field.begin(begun_secs);
@@ -205,65 +210,69 @@ impl<L: Lanes> World<L> {
         let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
             self.disturbed = true;
-            self.motion.stir_up();
+            self.motion.assume_fast_bodies();
             let fast = self.continuous.begin(self.settings.continuous);
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
         } else {
             let stiffness = self.settings.contact_stiffness();
-            let task = Task { solver, traits, dt_secs, stiffness, plan: &plan };
-            let moved = self.move_in_contact(&task, &seen, &mut clock);
+            let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
+            let moved = self.move_in_contact(&context, &seen);
             let fast = self.continuous.begin(self.settings.continuous);
-            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, task.speeds());
+            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, context.speeds());
             moved
         };
         self.fields = fields;
-        let (skin_m, margin) = (traits.touch(), traits.margin(solver));
-        let (apart, stirred) = (self.broad.kept_apart(), &mut self.motion.stirred);
-        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, apart, stirred);
-        self.times.lap(Stage::Integrate, &mut clock);
+        let (skin_m, margin) = (needs.touch(), needs.margin(solver));
+        let (apart, has_moved) = (self.broad.kept_apart(), &mut self.motion.has_moved);
+        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, apart, has_moved);
+        self.stopwatch.lap(Stage::Integrate);
 
         let manifolds = &self.narrow.manifolds;
         skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
-        self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, traits);
-        let paces = self.solving.paces().span().filter(|_| !free_flight);
+        self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
+        let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
         self.counts.direct_joints = self.solving.direct_joints();
-        self.counts.substeps = paces.unwrap_or([substeps; 2]);
-        self.times.steps += 1;
+        self.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
         self.check_finite(finite)?;
         self.watch(free_flight)?;
         if self.settings.sleep {
-            self.doze(dt_secs, seen.changed);
+            self.update_sleep(dt_secs, seen.changed);
         }
-        self.times.lap(Stage::Measure, &mut clock);
+        self.stopwatch.lap(Stage::Measure);
+        self.stopwatch.end();
         Ok(())
     }
 
     /// Brings pairs and their manifolds up to date, as far as something has moved.
-    fn find_contacts(&mut self, traits: Traits, dt_secs: L::Elem, clock: &mut Instant) -> Seen {
+    fn find_contacts(&mut self, needs: SceneNeeds, dt_secs: L::Elem) -> Seen {
         let Settings { solver, skips, broad, .. } = self.settings;
-        let margin = traits.margin(solver);
+        let margin = needs.margin(solver);
         let reach = margin + self.bodies.grain();
         let keep = skips.has(Skip::PairList);
-        let ahead_secs = if self.motion.swift && margin > L::Elem::ZERO { dt_secs } else { L::Elem::ZERO };
+        let ahead_secs = if self.motion.needs_speculative_margin && margin > L::Elem::ZERO {
+            dt_secs
+        } else {
+            L::Elem::ZERO
+        };
         let found = self.broad.find::<L>(&self.bodies, broad, reach, ahead_secs, keep);
-        self.times.lap(Stage::Broad, clock);
+        self.stopwatch.lap(Stage::Broad);
 
         let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
-        // A new list can wait until something stirs: what was too far apart for a contact still is.
-        self.undealt |= !found.kept;
-        let still = reuse && !self.motion.any_stirred && !self.regrouped;
+        // A new list can wait until something moves: what was too far apart for a contact still is.
+        self.pairs_outdated |= !found.kept;
+        let still = reuse && !self.motion.any_has_moved && !self.regrouped;
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
             if self.regrouped {
                 self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.regroup();
             }
-            if std::mem::take(&mut self.undealt) {
+            if std::mem::take(&mut self.pairs_outdated) {
                 self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
-                self.narrow.deal(&self.bodies, self.broad.pairs());
+                self.narrow.rebuild(&self.bodies, self.broad.pairs());
             }
-            let stirred = if reuse { Stirred::These(&self.motion.stirred) } else { Stirred::All };
-            seen.looked_at = self.narrow.choose(self.bodies.len(), stirred);
+            let has_moved = if reuse { MovedBodies::These(&self.motion.has_moved) } else { MovedBodies::All };
+            seen.looked_at = self.narrow.choose(self.bodies.len(), has_moved);
             self.solving.hand_back_chosen(self.narrow.found(), &self.motion);
             match self.narrow.wanted() {
                 Some(slots) => self.bodies.refresh_polygons_in(slots),
@@ -276,119 +285,69 @@ impl<L: Lanes> World<L> {
                 self.wake_touched();
             }
         }
-        self.times.lap(Stage::Narrow, clock);
+        self.stopwatch.lap(Stage::Narrow);
         seen
     }
 
     /// The substeps of a step with contacts; false if one broke off at a state that is not finite.
-    fn move_in_contact(
-        &mut self,
-        task: &Task<'_, L::Elem>,
-        seen: &Seen,
-        clock: &mut Instant,
-    ) -> (Skipped, bool) {
+    fn move_in_contact(&mut self, context: &SolverContext<'_, L::Elem>, seen: &Seen) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        let goal = Goal::of(task, &self.settings, &self.forces);
+        let goal = Goal::of(context, &self.settings, &self.forces);
         let repaced = goal.is_some_and(|goal| {
-            solving.decide_paces(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
+            solving.decide_substep_groups(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
             solving.prepare(bodies, self.narrow.found(), seen.changed || repaced, motion);
-            solving.note_depth(|| self.narrow.deepest(), task.traits.length);
+            solving.note_depth(|| self.narrow.deepest(), context.needs.length);
         }
         let awake = self.islands.awake_beside_sleepers();
-        solving.prepare_joints(task, bodies, &self.joints, (awake, self.groupings));
-        let warm = solving.begin(task, bodies, &self.narrow.manifolds, motion);
-        self.times.lap(Stage::Prepare, clock);
+        solving.prepare_joints(context, bodies, &self.joints, (awake, self.groupings));
+        let warm = solving.begin(context, bodies, &self.narrow.manifolds, motion);
+        self.stopwatch.lap(Stage::Prepare);
         let (mut skipped, mut finite) = (Skipped::default(), true);
-        for pace in 0..self.solving.paces().count() {
+        for substep_group in 0..self.solving.substep_groups().count() {
             if finite {
-                self.solving.enter_pace(pace, &mut self.motion);
-                (skipped, finite) = self.substeps(task, pace, warm, clock);
-                self.solving.leave_pace(pace, &mut self.motion);
+                self.solving.enter_group(substep_group, &mut self.motion);
+                (skipped, finite) = self.substeps(context, substep_group, warm);
+                self.solving.leave_group(substep_group, &mut self.motion);
             }
         }
         let (motion, solving) = (&mut self.motion, &mut self.solving);
-        solving.end(task, &mut self.narrow.manifolds, motion);
+        solving.end(context, &mut self.narrow.manifolds, motion);
         solving.end_joints(&mut self.joints);
-        self.times.lap(Stage::Solve, clock);
+        self.stopwatch.lap(Stage::Solve);
         (skipped, finite)
     }
 
-    /// The substeps of one pace; false if they broke off at a state that is not finite.
+    /// The substeps of one substep group; false if they broke off at a state that is not finite.
     fn substeps(
         &mut self,
-        task: &Task<'_, L::Elem>,
-        pace: usize,
+        context: &SolverContext<'_, L::Elem>,
+        substep_group: usize,
         mut warm: Warm,
-        clock: &mut Instant,
     ) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        let substeps = solving.paces().substeps(pace).unwrap_or(task.plan.substeps);
-        let plan = Plan { substeps, h_secs: task.dt_secs / f64::from(substeps), ..*task.plan };
-        let task = &Task { plan: &plan, ..*task };
+        let substeps = solving.substep_groups().substeps(substep_group).unwrap_or(context.plan.substeps);
+        let plan = Plan { substeps, h_secs: context.dt_secs / f64::from(substeps), ..*context.plan };
+        let context = &SolverContext { plan: &plan, ..*context };
         let mut skipped = Skipped::default();
         for substep in 0..substeps {
             let plan = Plan { since_secs: plan.h_secs * f64::from(substep), ..plan };
             skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
             warm = Warm::Onward;
-            self.times.lap(Stage::Integrate, clock);
-            solving.solve(task, motion, substep == 0);
-            self.times.lap(Stage::Solve, clock);
+            self.stopwatch.lap(Stage::Integrate);
+            solving.solve(context, motion, substep == 0);
+            self.stopwatch.lap(Stage::Solve);
             let finite = integrate::advance::<L>(&plan, motion);
-            self.times.lap(Stage::Integrate, clock);
+            self.stopwatch.lap(Stage::Integrate);
             if !finite {
                 // The next round's prediction would hide whether the solver began it.
                 return (skipped, false);
             }
-            solving.settle(task, bodies, &mut self.narrow.manifolds, motion);
-            self.times.lap(Stage::Solve, clock);
+            solving.settle(context, bodies, &mut self.narrow.manifolds, motion);
+            self.stopwatch.lap(Stage::Solve);
         }
         (skipped, true)
-    }
-
-    /// Looks over the scene when it has changed: which fields, which contact terms it needs.
-    fn inspect(&mut self) {
-        let seen = (self.bodies.revision(), self.bodies.removals());
-        let removed = self.inspected.is_none_or(|(_, removals)| removals != seen.1);
-        if removed && !self.joints.is_empty() {
-            self.joints.prune(&self.bodies);
-        }
-        if self.inspected_joints != self.joints.revision() {
-            self.inspected_joints = self.joints.revision();
-            self.broad.keep_apart(self.joints.apart());
-            self.look_over_islands();
-            self.disturbed = true;
-            self.motion.stir_up();
-        }
-        if self.inspected == Some(seen) {
-            return;
-        }
-        if removed {
-            self.narrow.manifolds.forget();
-            self.solving.forget();
-            self.motion.forget_drift();
-        }
-        self.inspected = Some(seen);
-        self.watchdog.forget();
-        self.solving.freshen(!removed);
-        self.fields = self.forces.fields();
-        if self.bodies.force.is_some() {
-            self.fields.insert(0, Field::PerBody);
-        }
-        let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
-        let [gx, gy] = self.forces.gravity.unwrap_or_default();
-        self.traits = Traits {
-            friction: some(self.bodies.friction.as_slice()),
-            restitution: some(self.bodies.restitution.as_slice()),
-            length: self.broad.look_over(&self.bodies),
-            gravity: gx.hypot(gy),
-        };
-        self.motion.resize(&self.bodies);
-        self.motion.stir_up();
-        self.continuous.look_over(&self.bodies);
-        self.look_over_islands();
-        self.disturbed = true;
     }
 
     /// `rounds_finite`: no round of integrating and solving broke off.

@@ -6,7 +6,7 @@ use lamina2d::internals::Solving;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
 
-use super::pile::{Memory, Pile, State, task};
+use super::pile::{Memory, Pile, State, context};
 use super::{Kernel, Stage, answer_of, bits, list_widths};
 use crate::common::Answer;
 
@@ -32,7 +32,7 @@ impl Net {
     fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
         let Pile { bodies, joints, .. } = &self.pile;
         let plan = self.pile.plan(Solver::Soft);
-        let task = task(Solver::Soft, &plan);
+        let context = context(Solver::Soft, &plan);
         let mut state = State {
             motion: self.pile.motion(),
             solving: Solving::default(),
@@ -40,14 +40,14 @@ impl Net {
             manifolds: Manifolds::default(),
         };
         let State { motion, solving, manifolds } = &mut state;
-        solving.prepare_joints(&task, bodies, joints, (None, 0));
+        solving.prepare_joints(&context, bodies, joints, (None, 0));
         if self.part == Part::Place {
             return state;
         }
-        let warm = solving.begin(&task, bodies, manifolds, motion);
+        let warm = solving.begin(&context, bodies, manifolds, motion);
         internals::predict::<L>(&plan, bodies, motion, warm);
         if self.part == Part::Relax {
-            solving.solve(&task, motion, true);
+            solving.solve(&context, motion, true);
             assert!(internals::advance::<L>(&plan, motion), "a substep that stays finite");
         }
         state
@@ -75,12 +75,12 @@ impl Stage for Net {
     fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {
         let Pile { bodies, joints, .. } = &self.pile;
         let plan = self.pile.plan(Solver::Soft);
-        let task = task(Solver::Soft, &plan);
+        let context = context(Solver::Soft, &plan);
         let State { motion, solving, manifolds } = now;
         match self.part {
-            Part::Place => solving.prepare_joints(&task, bodies, joints, (None, 0)),
-            Part::Push => solving.solve(&task, motion, true),
-            Part::Relax => solving.settle(&task, bodies, manifolds, motion),
+            Part::Place => solving.prepare_joints(&context, bodies, joints, (None, 0)),
+            Part::Push => solving.solve(&context, motion, true),
+            Part::Relax => solving.settle(&context, bodies, manifolds, motion),
         }
     }
 

@@ -3,7 +3,7 @@
 use lamina2d::body::{Bodies, Form};
 use lamina2d::contact::Manifolds;
 use lamina2d::force::{Field, Forces};
-use lamina2d::internals::{BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, Solving, Task};
+use lamina2d::internals::{BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, SolverContext, Solving};
 use lamina2d::joint::Joints;
 use lamina2d::lanes::{Lanes, f32s};
 use lamina2d::settings::{Broad, Integrator, Skips, Solver};
@@ -106,6 +106,6 @@ impl<L: Lanes<Elem = f32>> Memory<L> {
 }
 
 /// A step of `plan`, as its solver sees it.
-pub(super) fn task<'a>(solver: Solver, plan: &'a Plan<'a, f32>) -> Task<'a, f32> {
-    Task { solver, traits: TRAITS, dt_secs: DT_SECS, stiffness: HERTZ_TIMES_SUBSTEP, plan }
+pub(super) fn context<'a>(solver: Solver, plan: &'a Plan<'a, f32>) -> SolverContext<'a, f32> {
+    SolverContext { solver, needs: TRAITS, dt_secs: DT_SECS, stiffness: HERTZ_TIMES_SUBSTEP, plan }
 }

@@ -4,7 +4,7 @@ use lamina2d::internals;
 use lamina2d::lanes::Lanes;
 use lamina2d::settings::Solver;
 
-use super::pile::{Memory, Pile, State, task};
+use super::pile::{Memory, Pile, State, context};
 use super::{Kernel, SIZES, Stage, answer_of, bits, list_widths};
 use crate::common::Answer;
 
@@ -30,30 +30,30 @@ impl Pass {
     /// Everything as the part finds it in a step's first substep under gravity.
     fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
         let (plan, bodies) = (self.pile.plan(self.solver), &self.pile.bodies);
-        let task = task(self.solver, &plan);
+        let context = context(self.solver, &plan);
         let mut state = State {
             motion: self.pile.motion(),
             manifolds: self.pile.narrow.manifolds.clone(),
             solving: self.pile.solving::<L>(),
         };
         let State { motion, manifolds, solving } = &mut state;
-        let warm = solving.begin(&task, bodies, manifolds, motion);
+        let warm = solving.begin(&context, bodies, manifolds, motion);
         internals::predict::<L>(&plan, bodies, motion, warm);
         if self.part == Part::Solve {
             return state;
         }
-        solving.solve(&task, motion, true);
+        solving.solve(&context, motion, true);
         assert!(internals::advance::<L>(&plan, motion), "a substep that stays finite");
         if self.part == Part::Settle && self.solver == Solver::Avbd {
             // It cuts bodies into batches in its first pass after contacts have changed: not what a pass is.
             let untouched = (state.motion.clone(), state.manifolds.clone());
-            state.solving.settle(&task, bodies, &mut state.manifolds, &mut state.motion);
+            state.solving.settle(&context, bodies, &mut state.manifolds, &mut state.motion);
             (state.motion, state.manifolds) = untouched;
         }
         if self.part == Part::Store {
             let State { motion, manifolds, solving } = &mut state;
-            solving.settle(&task, bodies, manifolds, motion);
-            solving.end(&task, manifolds, motion);
+            solving.settle(&context, bodies, manifolds, motion);
+            solving.end(&context, manifolds, motion);
         }
         state
     }
@@ -79,11 +79,11 @@ impl Stage for Pass {
 
     fn run<L: Lanes<Elem = f32>>(&self, Memory { now, .. }: &mut Memory<L>) {
         let plan = self.pile.plan(self.solver);
-        let task = task(self.solver, &plan);
+        let context = context(self.solver, &plan);
         let State { motion, manifolds, solving } = now;
         match self.part {
-            Part::Solve => solving.solve(&task, motion, true),
-            Part::Settle => solving.settle(&task, &self.pile.bodies, manifolds, motion),
+            Part::Solve => solving.solve(&context, motion, true),
+            Part::Settle => solving.settle(&context, &self.pile.bodies, manifolds, motion),
             Part::Store => solving.hand_back(manifolds, motion),
         }
     }

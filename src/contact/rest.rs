@@ -9,18 +9,18 @@ use crate::lanes::Real;
 
 /// Contacts at rest, and the memory of the last sorting.
 #[derive(Clone, Debug)]
-pub(super) struct Rest<R: Real> {
+pub(super) struct SleepingContacts<R: Real> {
     now: PairTable<R>,
     before: PairTable<R>,
 }
 
-impl<R: Real> Default for Rest<R> {
+impl<R: Real> Default for SleepingContacts<R> {
     fn default() -> Self {
         Self { now: PairTable::default(), before: PairTable::default() }
     }
 }
 
-impl<R: Real> Rest<R> {
+impl<R: Real> SleepingContacts<R> {
     /// Forgets all.
     pub(super) fn forget(&mut self) {
         self.now.ends = [0; 6];

@@ -34,8 +34,8 @@ use crate::each::Each as _;
 use crate::force::{Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::motion::{
-    Block, Chosen, Fast, FastBodies, Motion, Plan, STIR, Skipped, Warm, angular_acceleration, block,
-    block_starts, lanes_from, load_four, matter, starts_in, store_four, vectors,
+    Block, CONTACT_REUSE_DISTANCE, Chosen, Fast, FastBodies, Motion, Plan, Skipped, Warm,
+    angular_acceleration, block, block_starts, blocks_in, lanes_in, load_four, matter, store_four, vectors,
 };
 use crate::settings::{Integrator, Skip};
 use crate::vec2::{Rot, Vec2};
@@ -191,7 +191,7 @@ fn fly_with<L: Lanes, S: Scheme>(
         if still {
             skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
         } else {
-            turn_block(bodies, at, &angle);
+            turn_block(bodies, at..at + BLOCK, &angle);
             bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
         }
         if is_fine {
@@ -231,12 +231,15 @@ impl<L: Lanes> Begun<L> {
         carries: bool,
         bodies: &Bodies<L::Elem>,
         motion: &Motion<L::Elem>,
-        start: usize,
+        lanes: std::ops::Range<usize>,
         from: Warm,
     ) {
         let Self { inv_mass, state, warm, total } = self;
         for i in 0..BLOCK {
-            let at = start + i;
+            let at = lanes.start + i;
+            if at >= lanes.end {
+                break;
+            }
             let [px, py, pw, held] = load_four::<L>(&motion.velocity, at);
             inv_mass[i] = held;
             state[i] = [px, py, pw];
@@ -269,15 +272,17 @@ fn predict_with<L: Lanes, S: Scheme>(
     let per_h = L::lit(1.0 / plan.h_secs);
     let share = L::lit(plan.impulse_share());
     let runs = std::mem::take(&mut motion.runs);
-    for start in starts_in::<L>(&runs) {
+    for (start, end) in blocks_in::<L>(&runs) {
         let mut begun = Begun::default();
-        begun.read(plan.carries, bodies, motion, start, from);
+        begun.read(plan.carries, bodies, motion, start..end, from);
         let Begun { inv_mass, state, warm, total } = &mut begun;
-        let chosen = motion.pace.map(|pace| -> [Chosen<L>; BLOCK] {
-            crate::each::indexed(|i| Chosen::new(&motion.paces, pace, start + i, inv_mass[i]))
+        let chosen = motion.substep_group.map(|substep_group| -> [Chosen<L>; BLOCK] {
+            crate::each::indexed(|i| {
+                Chosen::new(&motion.substep_groups, substep_group, start + i, inv_mass[i])
+            })
         });
         for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
-            // What drives bodies without mass in one pace is no warm start in the next.
+            // What drives bodies without mass in one substep group is no warm start in the next.
             *warm = warm.each(|warm| L::select(chosen.massless, L::zero(), warm));
         }
         let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
@@ -289,6 +294,9 @@ fn predict_with<L: Lanes, S: Scheme>(
         let alpha = angular_acceleration::<L>(bodies, start);
         for i in 0..BLOCK {
             let at = start + i;
+            if at >= end {
+                break;
+            }
             let alpha = alpha.map_or(L::zero(), |a| L::select(inv_mass[i].le(L::zero()), L::zero(), a[i]));
             let (turn, spin) = S::spin(step, state[i][2], alpha);
             let free = [next.velocity[i].x, next.velocity[i].y, spin];
@@ -325,7 +333,7 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
     let per_share = L::lit(1.0 / plan.impulse_share());
     let mut doubtful = L::zero();
     let runs = std::mem::take(&mut motion.runs);
-    for at in starts_in::<L>(&runs).flat_map(lanes_from) {
+    for at in lanes_in::<L>(&runs) {
         let row = load_four::<L>(&motion.velocity, at);
         let mut velocity = row;
         let mut moved = [L::zero(); 4];
@@ -338,8 +346,8 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
             // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
             doubtful = doubtful + moved[k] * L::zero();
         }
-        if let Some(pace) = motion.pace {
-            let chosen = Chosen::<L>::new(&motion.paces, pace, at, row[3]);
+        if let Some(substep_group) = motion.substep_group {
+            let chosen = Chosen::<L>::new(&motion.substep_groups, substep_group, at, row[3]);
             let old = load_four::<L>(&motion.moved, at);
             velocity = crate::each::indexed(|k| L::select(chosen.moves, velocity[k], row[k]));
             moved = crate::each::indexed(|k| L::select(chosen.moves, moved[k], old[k]));
@@ -352,23 +360,27 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
 }
 
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
-/// have gone further than [`STIR`] of their radius since they last did are noted as stirred, fast ones in `fast`.
+/// have gone further than [`CONTACT_REUSE_DISTANCE`] of their radius since they last did are noted as having moved, fast ones in `fast`.
 /// `speeds`, m/s, that no two bodies' points reach together while no body's reaches half of them: those of
-/// [`Motion::swift`] and [`Motion::lively`].
+/// [`Motion::needs_speculative_margin`] and [`Motion::may_bounce`].
 pub(crate) fn finish<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
     mut fast: FastBodies<'_, L::Elem>,
     speeds: [f64; 2],
 ) {
-    let (bound, [half_swift, half_lively]) = (L::lit(STIR), speeds.each(|speed| L::lit(0.5 * speed)));
-    let (mut any_stirred, mut any_swift, mut any_lively) = (0, 0, 0);
+    let (bound, [half_speculative, half_bouncing]) =
+        (L::lit(CONTACT_REUSE_DISTANCE), speeds.each(|speed| L::lit(0.5 * speed)));
+    let (mut any_has_moved, mut any_speculative, mut any_bouncing) = (0, 0, 0);
     let is_fine = bodies.fine.is_some();
     let runs = std::mem::take(&mut motion.runs);
-    for start in starts_in::<L>(&runs) {
+    for (start, end) in blocks_in::<L>(&runs) {
         let mut angle = [L::zero(); BLOCK];
         for i in 0..BLOCK {
             let at = start + i;
+            if at >= end {
+                break;
+            }
             let [vx, vy, w, _] = load_four::<L>(&motion.velocity, at);
             let last = load_four::<L>(&motion.moved, at);
             let moved: [L; 3] = crate::each::indexed(|k| motion.total[k].lanes::<L>()[at] + last[k]);
@@ -389,29 +401,31 @@ pub(crate) fn finish<L: Lanes>(
             }
             angle[i] = moved[2];
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
-            any_swift |= half_swift.le(speed).bits();
-            any_lively |= half_lively.le(speed).bits();
+            any_speculative |= half_speculative.le(speed).bits();
+            any_bouncing |= half_bouncing.le(speed).bits();
             let drift = motion.drift.lanes::<L>()[at] + path;
             let stirs = (bound * radius).lt(drift);
             motion.drift.lanes_mut::<L>()[at] = L::select(stirs, L::zero(), drift);
             let bits = stirs.bits();
-            any_stirred |= bits;
-            for (lane, stirred) in motion.stirred[at * L::WIDTH..(at + 1) * L::WIDTH].iter_mut().enumerate() {
-                *stirred = bits >> lane & 1 == 1;
+            any_has_moved |= bits;
+            for (lane, has_moved) in
+                motion.has_moved[at * L::WIDTH..(at + 1) * L::WIDTH].iter_mut().enumerate()
+            {
+                *has_moved = bits >> lane & 1 == 1;
             }
         }
-        turn_block(bodies, start, &angle);
+        turn_block(bodies, start..end, &angle);
     }
     motion.runs = runs;
-    motion.any_stirred = any_stirred != 0;
-    (motion.swift, motion.lively) = (any_swift != 0, any_lively != 0);
+    motion.any_has_moved = any_has_moved != 0;
+    (motion.needs_speculative_margin, motion.may_bounce) = (any_speculative != 0, any_bouncing != 0);
 }
 
 #[inline(always)]
-fn turn_block<L: Lanes>(bodies: &mut Bodies<L::Elem>, at: usize, angle: &[L; BLOCK]) {
+fn turn_block<L: Lanes>(bodies: &mut Bodies<L::Elem>, lanes: std::ops::Range<usize>, angle: &[L; BLOCK]) {
     let (c, s) =
-        (&mut bodies.c.lanes_mut::<L>()[at..at + BLOCK], &mut bodies.s.lanes_mut::<L>()[at..at + BLOCK]);
-    for i in 0..BLOCK {
+        (&mut bodies.c.lanes_mut::<L>()[lanes.clone()], &mut bodies.s.lanes_mut::<L>()[lanes.clone()]);
+    for i in 0..lanes.len().min(BLOCK) {
         let rot = Rot { c: c[i], s: s[i] }.turned(angle[i]);
         (c[i], s[i]) = (rot.c, rot.s);
     }

@@ -4,8 +4,7 @@ pub mod momentum;
 mod overlap;
 pub mod residual;
 mod state;
-
-use std::time::{Duration, Instant};
+mod stopwatch;
 
 use serde::Serialize;
 
@@ -15,13 +14,15 @@ use crate::contact::Manifolds;
 use crate::lanes::Real;
 use crate::motion::Skipped;
 use crate::settings::Skip;
-use crate::solve::Traits;
+use crate::solve::SceneNeeds;
 
 pub use overlap::{Outline, Penetration, depths, penetration};
 pub use state::{
     Invariants, attraction_energy, first_non_finite, hash_of, invariants, invariants_of, non_finite_in,
     state_hash,
 };
+pub use stopwatch::StageTimes;
+pub(crate) use stopwatch::Stopwatch;
 
 /// The stages of a step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -65,34 +66,6 @@ impl std::fmt::Display for Stage {
     }
 }
 
-/// Time per stage, summed over steps.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct StageTimes {
-    total: [Duration; Stage::ALL.len()],
-    /// Steps summed.
-    pub steps: u64,
-}
-
-impl StageTimes {
-    /// Adds the time since `clock` to a stage and sets the clock to now.
-    #[inline]
-    pub fn lap(&mut self, stage: Stage, clock: &mut Instant) {
-        let now = Instant::now();
-        self.total[stage as usize] += now - *clock;
-        *clock = now;
-    }
-
-    /// Time of a stage, summed.
-    pub fn total(&self, stage: Stage) -> Duration {
-        self.total[stage as usize]
-    }
-
-    /// Mean time of a stage per step, ns.
-    pub fn mean_ns(&self, stage: Stage) -> f64 {
-        self.total[stage as usize].as_nanos() as f64 / self.steps.max(1) as f64
-    }
-}
-
 /// What one step counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -121,7 +94,7 @@ impl Counts {
         free_flight: bool,
         skipped: Skipped,
         bodies: &Bodies<R>,
-        needed: Traits,
+        needed: SceneNeeds,
     ) -> Self {
         let contacts = manifolds.len() + manifolds.resting_len();
         let spared = |term_needed: bool| if term_needed { 0 } else { contacts as u64 };

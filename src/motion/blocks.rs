@@ -25,19 +25,24 @@ pub(crate) fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
     crate::each::indexed(|i| Vec2::new(x[i], y[i]))
 }
 
-/// The lane values of the block that starts at one.
-pub(crate) fn lanes_from(start: usize) -> Range<usize> {
-    start..start + BLOCK
-}
-
 /// First lane value of each block in a run of slots.
 pub(crate) fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
     (run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)).step_by(BLOCK)
 }
 
-/// First lane value of each block in some runs of slots.
-pub(crate) fn starts_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
-    runs.iter().cloned().flat_map(block_starts::<L>)
+/// First lane value of each block in some runs of slots, and the end of the lane values in use. What lies behind those is
+/// padding, which a world of one body would have more of than of anything else.
+pub(crate) fn blocks_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = (usize, usize)> {
+    let of = |run: Range<usize>| {
+        let end = run.end.div_ceil(L::WIDTH);
+        block_starts::<L>(run).map(move |start| (start, end.min(start + BLOCK)))
+    };
+    runs.iter().cloned().flat_map(of)
+}
+
+/// The lane values in use of some runs of slots.
+pub(crate) fn lanes_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
+    runs.iter().flat_map(|run| run.start / L::WIDTH..run.end.div_ceil(L::WIDTH))
 }
 
 #[inline(always)]

@@ -16,7 +16,7 @@ pub use plan::Plan;
 
 /// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
 /// errs by half the square of this at most, times the radius.
-pub const STIR: f64 = 4e-3;
+pub const CONTACT_REUSE_DISTANCE: f64 = 4e-3;
 
 /// What a step's passes left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,25 +58,25 @@ pub struct Motion<R: Real> {
     /// Rows of four per slot: the last substep's displacement x, y, angle, –.
     pub moved: Column<R>,
     /// Rows of four per slot: 1/m, 1/I, –, –.
-    pub matter: Column<R>,
+    pub inverse_masses: Column<R>,
     /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
     pub acceleration: Column<R>,
-    /// Path since the body last stirred, turning counted at the bounding radius, metres.
+    /// Path since the body last moved, turning counted at the bounding radius, metres.
     pub(crate) drift: Column<R>,
     /// Slots of bodies whose manifolds are to be found anew.
-    pub stirred: Vec<bool>,
+    pub has_moved: Vec<bool>,
     /// Is there one?
-    pub any_stirred: bool,
+    pub any_has_moved: bool,
     /// May two bodies close more than the gap that contacts are found within?
-    pub swift: bool,
+    pub needs_speculative_margin: bool,
     /// May two bodies meet fast enough to bounce?
-    pub lively: bool,
+    pub may_bounce: bool,
     /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
     pub runs: Vec<Range<usize>>,
-    /// Which pace each slot has, and the one whose bodies move now; all do where it is `None`.
-    pub paces: Column<R>,
-    /// See `paces`.
-    pub pace: Option<R>,
+    /// Which substep group each slot has, and the one whose bodies move now; all do where it is `None`.
+    pub substep_groups: Column<R>,
+    /// See `substep_groups`.
+    pub substep_group: Option<R>,
 }
 
 /// Where a step's warm start is found before its first substep.
@@ -101,21 +101,21 @@ impl<R: Real> Default for Motion<R> {
             ahead: three(),
             velocity: zeros(),
             moved: zeros(),
-            matter: zeros(),
+            inverse_masses: zeros(),
             acceleration: zeros(),
             drift: zeros(),
-            stirred: Vec::new(),
-            any_stirred: true,
-            swift: true,
-            lively: true,
+            has_moved: Vec::new(),
+            any_has_moved: true,
+            needs_speculative_margin: true,
+            may_bounce: true,
             runs: Vec::new(),
-            paces: Column::new(R::ZERO),
-            pace: None,
+            substep_groups: Column::new(R::ZERO),
+            substep_group: None,
         }
     }
 }
 
-/// Which lanes a pass over one pace changes: its bodies and, in all, those without mass. The others keep their rows.
+/// Which lanes a pass over one substep group changes: its bodies and, in all, those without mass. The others keep their rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chosen<L: Lanes> {
     pub(crate) moves: L::Mask,
@@ -124,9 +124,14 @@ pub(crate) struct Chosen<L: Lanes> {
 
 impl<L: Lanes> Chosen<L> {
     #[inline(always)]
-    pub(crate) fn new(paces: &Column<L::Elem>, pace: L::Elem, at: usize, inv_mass: L) -> Self {
+    pub(crate) fn new(
+        substep_groups: &Column<L::Elem>,
+        substep_group: L::Elem,
+        at: usize,
+        inv_mass: L,
+    ) -> Self {
         let massless = inv_mass.le(L::zero());
-        Self { moves: paces.lanes::<L>()[at].equals(L::splat(pace)) | massless, massless }
+        Self { moves: substep_groups.lanes::<L>()[at].equals(L::splat(substep_group)) | massless, massless }
     }
 }
 
@@ -140,17 +145,17 @@ impl<R: Real> Motion<R> {
         self.drift.resize(len);
         // A row for every lane of the last block, padding included.
         let padded = len.next_multiple_of(PAD);
-        for rows in [&mut self.velocity, &mut self.moved, &mut self.matter, &mut self.acceleration] {
+        for rows in [&mut self.velocity, &mut self.moved, &mut self.inverse_masses, &mut self.acceleration] {
             rows.resize(padded * 4);
         }
-        self.stirred.resize(padded, false);
+        self.has_moved.resize(padded, false);
         self.go_over_all(bodies);
     }
 
     /// A step goes over all bodies.
     pub fn go_over_all(&mut self, bodies: &Bodies<R>) {
         let len = bodies.len();
-        for (slot, row) in self.matter.fours_mut()[..len].iter_mut().enumerate() {
+        for (slot, row) in self.inverse_masses.fours_mut()[..len].iter_mut().enumerate() {
             *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
         }
         self.runs.clear();
@@ -175,13 +180,13 @@ impl<R: Real> Motion<R> {
                 self.runs.push(start..end);
             }
         }
-        let rows = self.matter.fours_mut()[..len].iter_mut().zip(asleep);
+        let rows = self.inverse_masses.fours_mut()[..len].iter_mut().zip(asleep);
         rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
     }
 
     /// Bodies may be as fast as they like: something has changed.
-    pub fn stir_up(&mut self) {
-        (self.swift, self.lively) = (true, true);
+    pub fn assume_fast_bodies(&mut self) {
+        (self.needs_speculative_margin, self.may_bounce) = (true, true);
     }
 
     /// All bodies begin to drift anew.
@@ -205,7 +210,7 @@ impl<R: Real> Motion<R> {
         if plan.couples() && L::WIDTH < R::Widest::WIDTH {
             return self.load::<R::Widest>(plan, bodies);
         }
-        for at in starts_in::<L>(&self.runs) {
+        for (at, _) in blocks_in::<L>(&self.runs) {
             let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
             let v = vectors::<L>(block(&bodies.vx, at), block(&bodies.vy, at));
             let w = block::<L>(&bodies.w, at);
@@ -225,7 +230,7 @@ impl<R: Real> Motion<R> {
         for run in &self.runs {
             let slots = run.start..run.end.next_multiple_of(PAD);
             let rows = self.velocity.fours_mut()[slots.clone()].iter_mut();
-            for (row, matter) in rows.zip(&self.matter.fours()[slots]) {
+            for (row, matter) in rows.zip(&self.inverse_masses.fours()[slots]) {
                 *row = [R::ZERO, R::ZERO, R::ZERO, matter[0]];
             }
         }

@@ -6,7 +6,7 @@
 //! Which pairs share a batch never changes an answer: loops that run to the batch's largest vertex
 //! count meet only repeated vertices beyond a lane's own.
 //!
-//! A pair is looked at when it is new or one of its bodies has stirred ([`Stirred`]); else it keeps its manifold.
+//! A pair is looked at when it is new or one of its bodies has moved ([`MovedBodies`]); else it keeps its manifold.
 
 mod box_box;
 mod circle_box;
@@ -95,7 +95,7 @@ fn bucket_of(a: Form, b: Form) -> usize {
 
 /// Which bodies have moved more than a little since their manifolds were found.
 #[derive(Clone, Copy, Debug)]
-pub enum Stirred<'a> {
+pub enum MovedBodies<'a> {
     /// All of them: every pair is looked at.
     All,
     /// Those whose slots hold `true`.
@@ -145,15 +145,15 @@ impl<R: Real> Narrow<R> {
     ///
     /// Reads poses and shapes; polygons' world rows must be fresh ([`Bodies::refresh_polygons`]).
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
-        self.deal(bodies, pairs);
-        self.choose(bodies.len(), Stirred::All);
+        self.rebuild(bodies, pairs);
+        self.choose(bodies.len(), MovedBodies::All);
         self.collide::<L>(bodies, margin, R::ZERO);
         self.manifolds.refresh();
     }
 
     /// Takes a new list of pairs; it serves until the next.
-    pub fn deal(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
-        self.manifolds.deal(pairs, |[a, b]| {
+    pub fn rebuild(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
+        self.manifolds.rebuild(pairs, |[a, b]| {
             let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
             if form_a <= form_b {
                 (bucket_of(form_a, form_b), [a, b])
@@ -163,11 +163,11 @@ impl<R: Real> Narrow<R> {
         });
     }
 
-    /// Chooses the pairs last dealt that are new or have a stirred body, of which there are `bodies`. Returns how
+    /// Chooses the pairs last dealt that are new or have a moved body, of which there are `bodies`. Returns how
     /// many.
-    pub fn choose(&mut self, bodies: usize, stirred: Stirred<'_>) -> usize {
+    pub fn choose(&mut self, bodies: usize, has_moved: MovedBodies<'_>) -> usize {
         for (number, todo) in self.todo.iter_mut().enumerate() {
-            todo.fill(&self.manifolds, number, stirred);
+            todo.fill(&self.manifolds, number, has_moved);
         }
         let chosen = self.todo.iter().map(|todo| todo.len).sum::<usize>();
         self.few = 4 * chosen < bodies;
@@ -385,8 +385,12 @@ struct Todo {
 }
 
 impl Todo {
-    fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, stirred: Stirred<'_>) {
+    fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, has_moved: MovedBodies<'_>) {
         let places = manifolds.bucket(bucket);
+        if places.is_empty() {
+            self.len = 0;
+            return;
+        }
         for list in [&mut self.a, &mut self.b, &mut self.place] {
             if list.len() < places.len() + 16 {
                 list.resize(places.len() + 16, 0);
@@ -395,9 +399,11 @@ impl Todo {
         let mut chosen = 0;
         for at in places {
             let [a, b] = manifolds.slots(at);
-            let look = match stirred {
-                Stirred::All => true,
-                Stirred::These(bodies) => bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at),
+            let look = match has_moved {
+                MovedBodies::All => true,
+                MovedBodies::These(bodies) => {
+                    bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at)
+                }
             };
             // Written always, kept when wanted: no branch to mispredict.
             (self.a[chosen], self.b[chosen], self.place[chosen]) = (a, b, at as u32);

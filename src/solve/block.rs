@@ -18,17 +18,19 @@ pub(super) fn cross<L: Lanes, const POINTS: usize>(c: &Constraint<L, POINTS>, no
     normals.inv_mass() + (ia * (la * ma) + ib * (lb * mb))
 }
 
-/// What the accumulated impulses change the normal velocities by: K·λ, from `held` = λ/m, m/s.
+/// What the accumulated impulses change the normal velocities by: K·λ, from `velocity_impulse` = λ/m, m/s.
 #[inline(always)]
 pub(super) fn answer<L: Lanes, const POINTS: usize>(
     cross: L,
     masses: [L; POINTS],
-    held: [L; POINTS],
+    velocity_impulse: [L; POINTS],
 ) -> [L; POINTS] {
     if POINTS == 1 {
-        return held;
+        return velocity_impulse;
     }
-    crate::each::indexed(|k| held[k] + cross * (masses[POINTS - 1 - k] * held[POINTS - 1 - k]))
+    crate::each::indexed(|k| {
+        velocity_impulse[k] + cross * (masses[POINTS - 1 - k] * velocity_impulse[POINTS - 1 - k])
+    })
 }
 
 /// Impulses over their masses with which points that carry something neither close nor part; `per_sec` is 1/h.
@@ -40,13 +42,13 @@ pub(super) fn relaxed<L: Lanes, const POINTS: usize>(
 ) -> [L; POINTS] {
     let (zero, cross) = (L::zero(), cross(c, normals));
     let masses = c.points.each(|point| point.mass);
-    let held = c.points.each(|point| point.held);
-    let answer = answer(cross, masses, held);
+    let velocity_impulse = c.points.each(|point| point.velocity_impulse);
+    let answer = answer(cross, masses, velocity_impulse);
     let wanted: [L; POINTS] = crate::each::indexed(|k| {
         let point = &c.points[k];
         // A point that carried nothing may go on closing its gap.
         let closing = zero.max(point.separation) * per_sec;
-        normals.velocity(point) + L::select(held[k].le(zero), closing, zero) - answer[k]
+        normals.velocity(point) + L::select(velocity_impulse[k].le(zero), closing, zero) - answer[k]
     });
     non_negative(cross, masses, wanted)
 }

@@ -6,7 +6,7 @@
 //! other. Under constant acceleration both are exact, so no time is lost, no energy is gained, and a ball comes to rest
 //! when it should: where 2e·u < −a·r·(1 − e), all the bounces that are left fit into the step.
 //!
-//! What a bounce displaces must not enter others: [`Part`] moves it out again, and what comes to lie there begins the next
+//! What a bounce displaces must not enter others: [`MoveOut`] moves it out again, and what comes to lie there begins the next
 //! step at the gap 0.
 
 use super::block::{answer, cross, non_negative, part};
@@ -19,7 +19,7 @@ const HOPS: usize = 16;
 
 /// How a point will part that bounces within the step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Parting<L> {
+pub(crate) struct Rebound<L> {
     /// Speed right after it has met, m/s; 0 where it does not bounce.
     begins: L,
     /// As the step ends, m/s.
@@ -29,14 +29,14 @@ pub(crate) struct Parting<L> {
     /// From the impact to the step's end, seconds.
     since: L,
     /// What the contact stops that holds it from then on, which it will not have to, m/s.
-    borne: L,
+    supported_velocity: L,
 }
 
 /// What was noted at a step's beginning, per batch and point.
 #[derive(Clone, Debug)]
 pub(crate) struct Bounces<L> {
-    two: Vec<[Parting<L>; 2]>,
-    one: Vec<[Parting<L>; 1]>,
+    two: Vec<[Rebound<L>; 2]>,
+    one: Vec<[Rebound<L>; 1]>,
 }
 
 impl<L> Default for Bounces<L> {
@@ -49,13 +49,13 @@ impl<L: Lanes> Bounces<L> {
     /// Makes room for so many batches.
     pub(crate) fn resize(&mut self, [two, one]: [usize; 2]) {
         let zero = L::zero();
-        let none = Parting { begins: zero, speed: zero, gap: zero, since: zero, borne: zero };
+        let none = Rebound { begins: zero, speed: zero, gap: zero, since: zero, supported_velocity: zero };
         self.two.resize(two, [none; 2]);
         self.one.resize(one, [none; 1]);
     }
 
     #[inline(always)]
-    fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [Parting<L>] {
+    fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [Rebound<L>] {
         if POINTS == 2 { &mut self.two[at] } else { &mut self.one[at] }
     }
 }
@@ -91,7 +91,7 @@ impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
         for ((point, gap), noted) in c.points.iter().zip(gaps).zip(self.bounces.at::<POINTS>(at)) {
             let speed = speeds.velocity(point);
             // What it carried, if anything, is not what stops it: it has yet to meet.
-            let meeting = point.held.lt(L::lit(-0.5) * speed);
+            let meeting = point.velocity_impulse.lt(L::lit(-0.5) * speed);
             let bounces = speed.lt(-self.threshold) & meeting & zero.lt(point.mass);
             if !bounces.any() {
                 noted.begins = zero;
@@ -105,14 +105,14 @@ impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
             // Later than this step it meets only if others hold it up, as fast as it is.
             let meets = L::select(until.le(self.dt_secs), meets, -speed);
             let begins = L::select(bounces, c.restitution * meets, zero);
-            *noted = parting(begins, zero.max(self.dt_secs - until), pull, c.restitution);
+            *noted = rebound(begins, zero.max(self.dt_secs - until), pull, c.restitution);
         }
     }
 }
 
 /// How a point parts that has just met and has `since` seconds left, pulled back by `pull` < 0: it may meet again.
 #[inline(always)]
-fn parting<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Parting<L> {
+fn rebound<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Rebound<L> {
     let (zero, two) = (L::zero(), L::lit(2.0));
     // Both sides of 2u < −a·r; `again` where it comes back within the step.
     let comes = |begins: L, since: L| zero.lt(begins) & (two * begins).lt(-(pull * since));
@@ -130,7 +130,7 @@ fn parting<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Pa
     begins = L::select(again, zero, begins);
     let change = pull * since;
     let gap = (begins + L::lit(0.5) * change) * since;
-    Parting { begins, speed: begins + change, gap, since, borne: zero.max(-change) }
+    Rebound { begins, speed: begins + change, gap, since, supported_velocity: zero.max(-change) }
 }
 
 /// The pass that ends a step: points that bounce and were stopped part as noted.
@@ -161,10 +161,10 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
         let mut to_a = Side::displacement(self.displaced, ends.a, a.inv_mass);
         let mut to_b = Side::displacement(self.displaced, ends.b, b.inv_mass);
-        let mut ways = Normals::begin(c, &to_a, &to_b);
+        let mut displacements = Normals::begin(c, &to_a, &to_b);
         let mut normals = Normals::begin(c, &a, &b);
         let gaps = gaps(c, &ends, self.moved);
-        let gaps: [L; POINTS] = crate::each::indexed(|k| gaps[k] + ways.velocity(&c.points[k]));
+        let gaps: [L; POINTS] = crate::each::indexed(|k| gaps[k] + displacements.velocity(&c.points[k]));
         let bounces: [L::Mask; POINTS] = crate::each::indexed(|k| {
             // One that nothing has stopped yet will be met in the next step.
             let stopped = (L::lit(-0.5) * noted[k].begins).le(normals.velocity(&c.points[k]));
@@ -175,27 +175,27 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
         };
         let masses = where_bounces(&|k| c.points[k].mass);
         let cross = cross(c, &normals);
-        let borne = where_bounces(&|k| noted[k].borne);
-        let answer = answer(cross, masses, borne);
+        let supported_velocity = where_bounces(&|k| noted[k].supported_velocity);
+        let answer = answer(cross, masses, supported_velocity);
         let lacks = where_bounces(&|k| normals.velocity(&c.points[k]) - noted[k].speed - answer[k]);
         let given = non_negative(cross, masses, lacks);
         let parted = non_negative(cross, masses, where_bounces(&|k| gaps[k] - noted[k].gap));
         let (mut load, mut since, mut kept) = (zero, zero, zero);
         for k in 0..POINTS {
-            let impulse = masses[k] * (given[k] - borne[k]);
+            let impulse = masses[k] * (given[k] - supported_velocity[k]);
             normals.push(c, k, impulse);
-            ways.push(c, k, masses[k] * parted[k]);
+            displacements.push(c, k, masses[k] * parted[k]);
             load = load + zero.max(impulse);
             since = since.max(L::select(bounces[k], noted[k].since, zero));
             // An impact is no load to begin the next step with.
-            c.points[k].held = L::select(bounces[k], zero, c.points[k].held);
-            kept = kept.max(c.points[k].held);
+            c.points[k].velocity_impulse = L::select(bounces[k], zero, c.points[k].velocity_impulse);
+            kept = kept.max(c.points[k].velocity_impulse);
             self.any |= bounces[k].any();
         }
         normals.end(c, &mut a, &mut b);
-        ways.end(c, &mut to_a, &mut to_b);
-        let rubbed = c.rub_within(&mut a, &mut b, zero, load);
-        c.rub(&mut to_a, &mut to_b, rubbed * since);
+        displacements.end(c, &mut to_a, &mut to_b);
+        let rubbed = c.apply_friction_within(&mut a, &mut b, zero, load);
+        c.apply_friction(&mut to_a, &mut to_b, rubbed * since);
         c.tangent_impulse = L::select(zero.lt(since) & kept.le(zero), zero, c.tangent_impulse);
         a.scatter(self.rows, ends.a);
         b.scatter(self.rows, ends.b);
@@ -204,36 +204,46 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
     }
 }
 
-/// The pass after [`Bounce`]: what bounces displaced into others, or deeper into them, is moved out again.
+/// The pass that ends a step by displacements alone: what is in others, by a law, is moved out of them.
 #[derive(Debug)]
-pub(crate) struct Part<'a, L: Lanes> {
+pub(crate) struct MoveOut<'a, L: Lanes, F> {
     /// Velocities per slot, for their inverse masses.
     pub rows: &'a [[L::Elem; 4]],
-    /// What bounces displace, per slot.
+    /// What is displaced so far, per slot.
     pub displaced: &'a mut [[L::Elem; 4]],
     /// Displacement of the last substep per slot; `None` where gaps are up to date.
     pub moved: Option<&'a [[L::Elem; 4]]>,
+    /// How far a point has to be moved out, metres, negative, 0 where it has not: from its gap as the step ends, what that
+    /// has been displaced by so far, and its effective mass, 0 where it does not exist.
+    pub entered: F,
+    /// Was there one?
+    pub any: bool,
 }
 
-impl<L: Lanes> Visit<L> for Part<'_, L> {
+/// What bounces displaced into others, or deeper into them; what overlapped before may, as much.
+pub(crate) fn by_bounces<L: Lanes>(gap: L, way: L, _: L) -> L {
+    let zero = L::zero();
+    L::select(way.lt(zero), zero.min(way + zero.max(gap)), zero)
+}
+
+impl<L: Lanes, F: Fn(L, L, L) -> L> Visit<L> for MoveOut<'_, L, F> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let side = |slots: &[u32]| {
             Side::displacement(self.displaced, slots, Side::<L>::gather(self.rows, slots).inv_mass)
         };
         let (mut to_a, mut to_b) = (side(ends.a), side(ends.b));
-        let ways = Normals::begin(c, &to_a, &to_b);
-        let zero = L::zero();
-        let before = gaps(c, &ends, self.moved);
+        let displacements = Normals::begin(c, &to_a, &to_b);
+        let gaps = gaps(c, &ends, self.moved);
         let entered: [L; POINTS] = crate::each::indexed(|k| {
-            let way = ways.velocity(&c.points[k]);
-            // What overlapped before may, as much.
-            L::select(way.lt(zero), zero.min(way + zero.max(before[k])), zero)
+            let point = &c.points[k];
+            (self.entered)(gaps[k], displacements.velocity(point), point.mass)
         });
-        if !entered.iter().any(|entered| entered.lt(zero).any()) {
+        if !entered.iter().any(|entered| entered.lt(L::zero()).any()) {
             return;
         }
-        part(c, ways, entered, [&mut to_a, &mut to_b]);
+        self.any = true;
+        part(c, displacements, entered, [&mut to_a, &mut to_b]);
         to_a.scatter(self.displaced, ends.a);
         to_b.scatter(self.displaced, ends.b);
     }
@@ -241,7 +251,7 @@ impl<L: Lanes> Visit<L> for Part<'_, L> {
 
 /// Gaps once bodies have `moved`.
 #[inline(always)]
-pub(super) fn gaps<L: Lanes, const POINTS: usize>(
+fn gaps<L: Lanes, const POINTS: usize>(
     c: &Constraint<L, POINTS>,
     ends: &Ends<'_>,
     moved: Option<&[[L::Elem; 4]]>,

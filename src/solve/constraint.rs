@@ -56,14 +56,14 @@ pub struct Point<L> {
     /// Present separation, metres.
     pub separation: L,
     /// Accumulated normal impulse over the effective mass, m/s: what it stops.
-    pub held: L,
+    pub velocity_impulse: L,
 }
 
 impl<L: Lanes> Point<L> {
     /// Accumulated normal impulse, N·s per substep.
     #[inline(always)]
     pub fn impulse(&self) -> L {
-        self.held * self.mass
+        self.velocity_impulse * self.mass
     }
 }
 
@@ -98,7 +98,7 @@ pub struct Parts<L: Lanes> {
     /// See [`crate::contact::impulse`].
     pub impulse: [L; 4],
     /// 1/m, 1/I of A and B.
-    pub matter: [[L; 2]; 2],
+    pub inverse_masses: [[L; 2]; 2],
     /// Lanes whose manifold has two points.
     pub two_points: L::Mask,
 }
@@ -120,7 +120,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         let to_b = Vec2::new(dx, dy);
         let arms = [Vec2::new(ax0, ay0), Vec2::new(ax1, ay1)];
         let zero = L::zero();
-        let [[ma, ia], [mb, ib]] = parts.matter;
+        let [[ma, ia], [mb, ib]] = parts.inverse_masses;
         let levers = |arm: Vec2<L>, axis: Vec2<L>| [arm.cross(axis), (arm - to_b).cross(axis)];
         let response = |[la, lb]: [L; 2]| (ma + mb) + (ia * (la * la) + ib * (lb * lb));
         let points = crate::each::indexed(|k| {
@@ -131,7 +131,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
                 levers: levers.each(exists),
                 mass: exists(inverse(response)),
                 separation: exists(parts.gap[k]),
-                held: parts.impulse[k] * response,
+                velocity_impulse: parts.impulse[k] * response,
             }
         });
         let middle = if POINTS == 1 {
@@ -161,12 +161,12 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// Puts back what lanes without a bit in `fresh` held, which would come back rounded from an impulse, and the levers
     /// of their tangents, which today's gap would move: which lanes share a batch must not matter.
-    pub fn keep_held(&mut self, old: &Self, fresh: u32) {
+    pub fn keep_velocity_impulses(&mut self, old: &Self, fresh: u32) {
         let lanes: [L::Elem; 16] =
             crate::each::indexed(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
         let fresh = L::zero().lt(L::load(&lanes));
         for (point, old) in self.points.iter_mut().zip(&old.points) {
-            point.held = L::select(fresh, point.held, old.held);
+            point.velocity_impulse = L::select(fresh, point.velocity_impulse, old.velocity_impulse);
         }
         for (lever, old) in self.tangent_levers.iter_mut().zip(old.tangent_levers) {
             *lever = L::select(fresh, *lever, old);
@@ -216,7 +216,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             normals.push(self, k, self.points[k].impulse());
         }
         normals.end(self, a, b);
-        self.rub(a, b, self.tangent_impulse);
+        self.apply_friction(a, b, self.tangent_impulse);
     }
 
     /// Friction: what stops sliding, within the cone of the normal impulses.
@@ -226,24 +226,30 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         for point in &self.points[1..] {
             load = load + point.impulse();
         }
-        self.tangent_impulse = self.rub_within(a, b, self.tangent_impulse, load);
+        self.tangent_impulse = self.apply_friction_within(a, b, self.tangent_impulse, load);
     }
 
     /// Changes a friction impulse to the one that stops sliding, within the cone of a normal one; returns the new one.
     #[inline(always)]
-    pub(super) fn rub_within(&self, a: &mut Side<L>, b: &mut Side<L>, held: L, load: L) -> L {
+    pub(super) fn apply_friction_within(
+        &self,
+        a: &mut Side<L>,
+        b: &mut Side<L>,
+        velocity_impulse: L,
+        load: L,
+    ) -> L {
         let tangent = self.tangent();
         let [la, lb] = self.tangent_levers;
         let sliding = (b.velocity - a.velocity).dot(tangent) + (b.spin * lb - a.spin * la);
         let bound = self.friction * load;
-        let next = (-bound).max(bound.min(held - sliding * self.tangent_mass));
-        self.rub(a, b, next - held);
+        let next = (-bound).max(bound.min(velocity_impulse - sliding * self.tangent_mass));
+        self.apply_friction(a, b, next - velocity_impulse);
         next
     }
 
     /// A tangential impulse at the middle of the points.
     #[inline(always)]
-    pub(super) fn rub(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: L) {
+    pub(super) fn apply_friction(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: L) {
         let tangent = self.tangent();
         let [la, lb] = self.tangent_levers;
         a.velocity = a.velocity - tangent * (impulse * a.inv_mass);

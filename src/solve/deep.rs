@@ -3,15 +3,10 @@
 //! A push of [`soft`](super::soft) gives bodies speed that its relaxation takes back, one contact after the other. In a
 //! heap that begins in itself much of it stays: twenty bodies at one point parted with eight times the cap, 34 m/s, and
 //! still with a half of it after fifteen relaxations more. So points deeper than [`DEEP`] only stop closing, and as the
-//! step ends [`PartDeep`] moves them apart, by [`PUSH_CAP`](super::soft::PUSH_CAP) at most: displacements alone, after
+//! step ends they are moved apart ([`owed`]), by [`PUSH_CAP`](super::soft::PUSH_CAP) at most: displacements alone, after
 //! which momentum is what it was.
 
-use super::block::part;
-use super::bounce::gaps;
-use super::constraint::{Constraint, Normals, Side};
-use super::stream::{Ends, Visit};
-use crate::each::Each as _;
-use crate::lanes::{LaneMask, Lanes};
+use crate::lanes::Lanes;
 
 /// Overlaps over this share of the scene's median radius are deep, where bodies have just come or changed. What sinks into
 /// something under a load is not treated so: a pile of 10,000 that fell with 2 substeps lost its springs' push and
@@ -35,44 +30,11 @@ impl Default for Apart {
     }
 }
 
-/// The pass that moves deep points apart.
-#[derive(Debug)]
-pub(super) struct PartDeep<'a, L: Lanes> {
-    /// Velocities per slot, for their inverse masses.
-    pub(super) rows: &'a [[L::Elem; 4]],
-    /// What is moved, per slot.
-    pub(super) displaced: &'a mut [[L::Elem; 4]],
-    /// Displacement of the last substep per slot; `None` where gaps are up to date.
-    pub(super) moved: Option<&'a [[L::Elem; 4]]>,
-    /// What is deep, metres.
-    pub(super) deep: L,
-    /// The most a point is moved, metres.
-    pub(super) most: L,
-    /// Is anything deep?
-    pub(super) any: bool,
-}
-
-impl<L: Lanes> Visit<L> for PartDeep<'_, L> {
-    #[inline(always)]
-    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        let zero = L::zero();
-        let over = gaps(c, &ends, self.moved).each(|gap| zero.min(gap + self.deep));
-        let is_deep = |k: usize| over[k].lt(zero) & zero.lt(c.points[k].mass);
-        if !(0..POINTS).any(|k| is_deep(k).any()) {
-            return;
-        }
-        self.any = true;
-        let side = |slots: &[u32]| {
-            Side::displacement(self.displaced, slots, Side::<L>::gather(self.rows, slots).inv_mass)
-        };
-        let (mut to_a, mut to_b) = (side(ends.a), side(ends.b));
-        let ways = Normals::begin(c, &to_a, &to_b);
-        let entered: [L; POINTS] = crate::each::indexed(|k| {
-            let owed = over[k].max(-self.most) + ways.velocity(&c.points[k]);
-            L::select(is_deep(k), zero.min(owed), zero)
-        });
-        part(c, ways, entered, [&mut to_a, &mut to_b]);
-        to_a.scatter(self.displaced, ends.a);
-        to_b.scatter(self.displaced, ends.b);
-    }
+/// How far a point is to be moved out of another that is in it by more than `deep`, by `most` at most: the law of
+/// [`MoveOut`](super::bounce::MoveOut).
+pub(super) fn owed<L: Lanes>(deep: L, most: L, [gap, way, mass]: [L; 3]) -> L {
+    let zero = L::zero();
+    let over = zero.min(gap + deep);
+    let is_deep = over.lt(zero) & zero.lt(mass);
+    L::select(is_deep, zero.min(over.max(-most) + way), zero)
 }

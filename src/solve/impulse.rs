@@ -13,25 +13,27 @@
 
 use super::block::{cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
+use super::joint::Stiffness;
+use super::scheme::{ContactSolver, Pairs, Substep};
 use super::stream::{Ends, Stream, Visit};
-use super::{Task, Traits};
+use super::{SceneNeeds, SolverContext};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
-pub(super) const CORRECTION_SHARE: f64 = 0.7;
+const CORRECTION_SHARE: f64 = 0.7;
 /// Depth left alone, over the scene's median radius (the thesis's 0.01 px over half its bodies' 25 px).
-pub(super) const SLOP: f64 = 1e-3;
+const SLOP: f64 = 1e-3;
 
 /// Velocities of all contacts. `moved`: displacements not yet known to the constraints.
-pub(super) fn resolve<L: Lanes>(
+fn resolve<L: Lanes>(
     stream: &mut Stream<L>,
-    task: &Task<'_, L::Elem>,
+    context: &SolverContext<'_, L::Elem>,
     rows: &mut [[L::Elem; 4]],
     moved: Option<&[[L::Elem; 4]]>,
 ) {
-    let threshold = L::lit(task.swift());
-    let Traits { friction, restitution, .. } = task.traits;
+    let threshold = L::lit(context.speculative_speed());
+    let SceneNeeds { friction, restitution, .. } = context.needs;
     stream.visit(&mut Resolve::<L> { rows, moved, threshold, friction, restitution });
 }
 
@@ -72,7 +74,7 @@ impl<L: Lanes> Visit<L> for Resolve<'_, L> {
         for k in 0..POINTS {
             normals.push(c, k, masses[k] * stopped[k]);
             // Not carried to the next step, but what friction is bounded by and what reports show.
-            c.points[k].held = stopped[k];
+            c.points[k].velocity_impulse = stopped[k];
         }
         normals.end(c, &mut a, &mut b);
         if self.friction {
@@ -86,13 +88,13 @@ impl<L: Lanes> Visit<L> for Resolve<'_, L> {
 
 /// Positions: what overlaps is moved apart, with no effect on velocities.
 #[derive(Debug)]
-pub(super) struct Correct<'a, L: Lanes> {
+struct Correct<'a, L: Lanes> {
     /// Displacement of this substep per slot: x, y, angle, –.
-    pub(super) moved: &'a mut [[L::Elem; 4]],
+    moved: &'a mut [[L::Elem; 4]],
     /// Velocity rows, for their inverse masses.
-    pub(super) rows: &'a [[L::Elem; 4]],
+    rows: &'a [[L::Elem; 4]],
     /// Depth left alone, metres.
-    pub(super) slop: L,
+    slop: L,
 }
 
 impl<L: Lanes> Visit<L> for Correct<'_, L> {
@@ -111,5 +113,29 @@ impl<L: Lanes> Visit<L> for Correct<'_, L> {
         part(c, normals, sinking, [&mut a, &mut b]);
         a.scatter(self.moved, ends.a);
         b.scatter(self.moved, ends.b);
+    }
+}
+
+/// The solver.
+#[derive(Debug)]
+pub(super) struct Impulse;
+
+impl<L: Lanes> ContactSolver<L> for Impulse {
+    fn solve(&self, substep: &mut Substep<'_, L>) {
+        let rows = substep.motion.velocity.fours_mut();
+        let moved = substep.behind.then_some(substep.motion.moved.fours());
+        if let Some(joints) = &mut substep.joints {
+            // One visit leaks less than it takes back: carried from step to step, impulses of chains would grow.
+            joints.warm_start(rows, if substep.first { 0.0 } else { 1.0 }, 1.0);
+            let how = Stiffness::baumgarte(substep.context.plan.h_secs);
+            joints.push(rows, moved.filter(|_| !substep.first), &how);
+        }
+        resolve(substep.stream, substep.context, rows, moved);
+    }
+
+    fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
+        let slop = L::lit(SLOP * substep.context.needs.length);
+        let (moved, rows) = (substep.motion.moved.fours_mut(), substep.motion.velocity.fours());
+        substep.stream.visit(&mut Correct { moved, rows, slop });
     }
 }

@@ -29,7 +29,7 @@
 //! | xpbd 8 | 0.34 · 2e-8 | 1.6 · 6e-6 | 0.21 · 2e-8 | 2.1 · 1e-7 | falls through | falls through | 1.3 · 2e-1 |
 //! | avbd 1 | 0.26 · 2e-3 | 4.1 · 6e-3 | 0.00 · 1e-4 | 1.2 · 4e-3 | 9.4 · 1e-2 | 49 · 2e-2 | 0.69 · 7e-3 |
 //!
-//! (12): the substeps these stacks were given, see [`tower`].
+//! (12): the substeps these stacks were given, see [`slender_stack`].
 //! One run each. `avbd` goes ten times over bodies and contacts in its one substep, `pgs` eight times over contacts
 //! in each, `soft` twice, `xpbd` twice. While polygons/150 falls, all overlap by 150 to 260 mm for a moment.
 
@@ -41,13 +41,14 @@ pub(crate) mod constraint;
 mod deep;
 mod impulse;
 pub(crate) mod joint;
-pub(crate) mod pace;
 mod pgs;
 mod rows;
+mod scheme;
+pub(crate) mod slender_stack;
 pub(crate) mod soft;
 mod solving;
 pub(crate) mod stream;
-pub(crate) mod tower;
+pub(crate) mod substep_group;
 mod xpbd;
 
 use crate::lanes::Real;
@@ -58,7 +59,7 @@ pub use solving::Solving;
 
 /// What a solver needs to know of the scene.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Traits {
+pub struct SceneNeeds {
     /// Some body has friction.
     pub friction: bool,
     /// Some body bounces.
@@ -79,7 +80,7 @@ const BOUNCE_STEPS: f64 = 0.01;
 /// Gaps up to this share of the median radius have touched: when a bounce is due, when a fast body is stopped.
 const TOUCH: f64 = 1e-3;
 
-impl Traits {
+impl SceneNeeds {
     /// The terms a solver must have, given what may be left out.
     #[must_use]
     pub fn needed(self, skips: Skips) -> Self {
@@ -117,11 +118,11 @@ pub fn pushes(solver: Solver) -> bool {
 
 /// A step as its solver sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Task<'a, R> {
+pub struct SolverContext<'a, R> {
     /// Which.
     pub solver: Solver,
     /// The terms to solve.
-    pub traits: Traits,
+    pub needs: SceneNeeds,
     /// Seconds per step.
     pub dt_secs: f64,
     /// Of soft contacts, hz·h.
@@ -130,19 +131,19 @@ pub struct Task<'a, R> {
     pub plan: &'a Plan<'a, R>,
 }
 
-impl<R> Task<'_, R> {
+impl<R> SolverContext<'_, R> {
     /// Slower bodies stay within the margin, m/s; slower approaches do not bounce where a step knows nothing of gaps.
-    pub fn swift(&self) -> f64 {
-        SWIFT_STEPS * self.traits.gravity * self.dt_secs
+    pub fn speculative_speed(&self) -> f64 {
+        SWIFT_STEPS * self.needs.gravity * self.dt_secs
     }
 
     /// Slower approaches do not bounce, m/s.
     pub fn bounce_threshold(&self) -> f64 {
-        BOUNCE_STEPS * self.traits.gravity * self.dt_secs
+        BOUNCE_STEPS * self.needs.gravity * self.dt_secs
     }
 
-    /// Of swift bodies, and of those that may bounce.
+    /// [`SolverContext::speculative_speed`] and [`SolverContext::bounce_threshold`].
     pub fn speeds(&self) -> [f64; 2] {
-        [self.swift(), self.bounce_threshold()]
+        [self.speculative_speed(), self.bounce_threshold()]
     }
 }

@@ -5,31 +5,33 @@
 //! λ_t ← clamp(λ_t − m_t·v_t, ±μ·λ_n). Overlap beyond the slop is pushed out as velocity, β·s/h, which stays in
 //! the bodies: this is what `soft` relaxes away. Source: Catto, Iterative Dynamics with Temporal Coherence, GDC 2005.
 
-use super::Task;
+use super::SolverContext;
 use super::block::{answer, cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
+use super::joint::Stiffness;
+use super::scheme::{ContactSolver, Pairs, Substep};
 use super::stream::{Ends, Stream, Visit};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 /// Visits to each contact per substep.
-pub(super) const ITERATIONS: usize = 8;
+const ITERATIONS: usize = 8;
 /// Share of the overlap beyond the slop that one substep takes away.
 const BAUMGARTE: f64 = 0.2;
 /// Overlap left alone, over the scene's median radius.
 const SLOP: f64 = 1e-3;
 
 /// One iteration: all contacts once. `moved`: displacements not yet known to the constraints.
-pub(super) fn iterate<L: Lanes>(
+fn iterate<L: Lanes>(
     stream: &mut Stream<L>,
-    task: &Task<'_, L::Elem>,
+    context: &SolverContext<'_, L::Elem>,
     rows: &mut [[L::Elem; 4]],
     moved: Option<&[[L::Elem; 4]]>,
 ) {
-    let h_secs = task.plan.h_secs;
-    let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP * task.traits.length));
+    let h_secs = context.plan.h_secs;
+    let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP * context.needs.length));
     let bias_rate = L::lit(BAUMGARTE / h_secs);
-    if task.traits.friction {
+    if context.needs.friction {
         stream.visit(&mut Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
     } else {
         stream.visit(&mut Pass::<L, false> { rows, moved, per_sec, bias_rate, slop });
@@ -62,8 +64,8 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {
         let mut normals = Normals::begin(c, &a, &b);
         let cross = cross(c, &normals);
         let masses = c.points.each(|point| point.mass);
-        let held = c.points.each(|point| point.held);
-        let answer = answer(cross, masses, held);
+        let velocity_impulse = c.points.each(|point| point.velocity_impulse);
+        let answer = answer(cross, masses, velocity_impulse);
         let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let gap = zero.max(point.separation) * self.per_sec;
@@ -72,8 +74,8 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {
         });
         let next = non_negative(cross, masses, wanted);
         for k in 0..POINTS {
-            normals.push(c, k, masses[k] * (next[k] - held[k]));
-            c.points[k].held = next[k];
+            normals.push(c, k, masses[k] * (next[k] - velocity_impulse[k]));
+            c.points[k].velocity_impulse = next[k];
         }
         normals.end(c, &mut a, &mut b);
         if FRICTION {
@@ -82,4 +84,26 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {
         a.scatter(self.rows, ends.a);
         b.scatter(self.rows, ends.b);
     }
+}
+
+/// The solver.
+#[derive(Debug)]
+pub(super) struct Pgs;
+
+impl<L: Lanes> ContactSolver<L> for Pgs {
+    fn solve(&self, substep: &mut Substep<'_, L>) {
+        let how = Stiffness::baumgarte(substep.h_secs());
+        let rows = substep.motion.velocity.fours_mut();
+        let moved = substep.behind.then_some(substep.motion.moved.fours());
+        for iteration in 0..ITERATIONS {
+            // Joints are placed as a step begins; all hear of displacements once.
+            let moved = moved.filter(|_| iteration == 0);
+            if let Some(joints) = &mut substep.joints {
+                joints.push(rows, moved.filter(|_| !substep.first), &how);
+            }
+            iterate(substep.stream, substep.context, rows, moved);
+        }
+    }
+
+    fn relax(&self, _: &mut Substep<'_, L>, _: Pairs<'_, L>) {}
 }

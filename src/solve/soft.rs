@@ -16,6 +16,9 @@
 
 use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
+use super::deep::DEEP;
+use super::joint::Stiffness;
+use super::scheme::{ContactSolver, Pairs, Substep};
 use super::stream::{Ends, Visit};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
@@ -100,8 +103,8 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
         });
         let masses = c.points.each(|point| point.mass);
         // Impulses in units of u: `share` of those of v.
-        let held = c.points.each(|point| point.held * self.share);
-        let answer = answer(cross, masses, held);
+        let velocity_impulse = c.points.each(|point| point.velocity_impulse * self.share);
+        let answer = answer(cross, masses, velocity_impulse);
         let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let closing = point.separation * soft.per_sec;
@@ -112,8 +115,8 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
         let soft_masses: [L; POINTS] = crate::each::indexed(|k| masses[k] * soften[k]);
         let next = non_negative(cross, soft_masses, wanted);
         for k in 0..POINTS {
-            normals.push(c, k, soft_masses[k] * next[k] - masses[k] * held[k]);
-            c.points[k].held = (soften[k] * next[k]) * self.per_share;
+            normals.push(c, k, soft_masses[k] * next[k] - masses[k] * velocity_impulse[k]);
+            c.points[k].velocity_impulse = (soften[k] * next[k]) * self.per_share;
         }
         normals.end(c, &mut a, &mut b);
         a.scatter(self.rows, ends.a);
@@ -137,8 +140,8 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Relax<'_, L, FRICTION> {
         let mut normals = Normals::begin(c, &a, &b);
         let next = relaxed(c, &normals, self.per_sec);
         for (k, next) in next.into_iter().enumerate() {
-            normals.push(c, k, c.points[k].mass * (next - c.points[k].held));
-            c.points[k].held = next;
+            normals.push(c, k, c.points[k].mass * (next - c.points[k].velocity_impulse));
+            c.points[k].velocity_impulse = next;
         }
         normals.end(c, &mut a, &mut b);
         if FRICTION {
@@ -146,5 +149,45 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Relax<'_, L, FRICTION> {
         }
         a.scatter(self.rows, ends.a);
         b.scatter(self.rows, ends.b);
+    }
+}
+
+/// The solver.
+#[derive(Debug)]
+pub(super) struct Soft;
+
+impl<L: Lanes> ContactSolver<L> for Soft {
+    fn solve(&self, substep: &mut Substep<'_, L>) {
+        let (context, h_secs, share) = (substep.context, substep.h_secs(), substep.share());
+        let rows = substep.motion.velocity.fours_mut();
+        if let Some(joints) = &mut substep.joints {
+            joints.push(rows, None, &Stiffness::soft(h_secs, share));
+            joints.solve_directly(rows, Some(&Stiffness::soft(h_secs, share)));
+        }
+        let moved = substep.behind.then_some(substep.motion.moved.fours());
+        let cap = PUSH_CAP * context.needs.length / context.dt_secs;
+        let soft = Softness::new(h_secs, substep.softened * (context.stiffness / h_secs), DAMPING, cap);
+        let deep = L::lit(-DEEP * context.needs.length);
+        let [share, per_share] = [share, 1.0 / share].each(L::lit);
+        if substep.deep {
+            substep.stream.visit(&mut Push::<L, true> { rows, moved, soft, deep, share, per_share });
+        } else {
+            substep.stream.visit(&mut Push::<L, false> { rows, moved, soft, deep, share, per_share });
+        }
+    }
+
+    fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
+        let how = Stiffness::soft(substep.h_secs(), substep.share());
+        let (rows, per_sec) =
+            (substep.motion.velocity.fours_mut(), L::lit(1.0 / substep.context.plan.h_secs));
+        if let Some(joints) = &mut substep.joints {
+            joints.relax(rows, substep.motion.moved.fours(), &how);
+            joints.solve_directly(rows, None);
+        }
+        if substep.context.needs.friction {
+            substep.stream.visit(&mut Relax::<L, true> { rows, per_sec });
+        } else {
+            substep.stream.visit(&mut Relax::<L, false> { rows, per_sec });
+        }
     }
 }

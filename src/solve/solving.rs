@@ -1,15 +1,16 @@
-//! What a step asks of its solver, in order: the dispatch from [`Solver`] to the files beside this one.
+//! What a step asks of its solver, in order; what each of them does is in the files beside this one.
 
 mod end;
+mod latest;
 
 use super::bounce::{self, Bounces};
 use super::color::Coloring;
-use super::constraint::Constraint;
-use super::joint::{JointStream, Sources, Stiffness};
-use super::pace::{Goal, Paces};
-use super::soft::{self, Softness};
-use super::stream::{Ends, Stream, Visit, WarmStart};
-use super::{Task, avbd, carries_impulses, deep, impulse, pgs, pushes, xpbd};
+use super::joint::{JointStream, Sources};
+use super::scheme::{Pairs, Substep, solver_of};
+use super::soft;
+use super::stream::{Stream, WarmStart};
+use super::substep_group::{Goal, SubstepGroups};
+use super::{SolverContext, avbd, carries_impulses, deep, pushes};
 use crate::body::Bodies;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
@@ -18,36 +19,7 @@ use crate::lanes::{Lanes, Real};
 use crate::motion::{Motion, Warm};
 use crate::settings::Solver;
 
-/// Where today's gaps and impulses are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Latest {
-    /// In the pairs' rows.
-    #[default]
-    InPairs,
-    /// In the constraints.
-    InConstraints,
-    /// In the constraints, whose gaps have yet to hear of the last displacements.
-    BeforeDisplacements,
-}
-
-/// Gaps hear of displacements.
-struct Follow<'a, R> {
-    moved: &'a [[R; 4]],
-}
-
-impl<L: Lanes> Visit<L> for Follow<'_, L::Elem> {
-    #[inline(always)]
-    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        c.follow(self.moved, &ends);
-    }
-}
-
-impl Latest {
-    /// The displacements that gaps have yet to hear of; none where a settling pass has told them.
-    fn yet_to_follow<R: Real>(self, motion: &Motion<R>) -> Option<&[[R; 4]]> {
-        (self == Self::BeforeDisplacements).then_some(motion.moved.fours())
-    }
-}
+use latest::{Follow, Latest};
 
 /// Colours, constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
@@ -55,15 +27,15 @@ pub struct Solving<L: Lanes> {
     coloring: Coloring,
     stream: Stream<L>,
     joints: JointStream<L>,
-    paces: Paces<L::Elem>,
-    /// The pace that is being solved, where there are several.
-    pace: Option<usize>,
+    substep_groups: SubstepGroups<L::Elem>,
+    /// The substep group that is being solved, where there are several.
+    substep_group: Option<usize>,
     bounces: Bounces<L>,
     /// What bounces displace, per slot: x, y (metres), angle, –.
     displaced: Vec<[L::Elem; 4]>,
     avbd: avbd::Avbd<L>,
     /// The graph of contacts is not the one `avbd` was cut for.
-    recut: bool,
+    graph_outdated: bool,
     /// The substep the impulses of the last step belong to, seconds.
     last_h_secs: f64,
     /// This substep over that one.
@@ -75,7 +47,7 @@ pub struct Solving<L: Lanes> {
     joint_scale: f64,
     latest: Latest,
     /// Bodies were fast enough to bounce as this step began: their approaches were looked at.
-    lively: bool,
+    may_bounce: bool,
     /// Something bounces in this step.
     bouncing: bool,
     deep: deep::Apart,
@@ -93,19 +65,19 @@ impl<L: Lanes> Default for Solving<L> {
             coloring: Coloring::default(),
             stream: Stream::default(),
             joints: JointStream::default(),
-            paces: Paces::default(),
-            pace: None,
+            substep_groups: SubstepGroups::default(),
+            substep_group: None,
             bounces: Bounces::default(),
             displaced: Vec::new(),
             avbd: avbd::Avbd::default(),
-            recut: true,
+            graph_outdated: true,
             last_h_secs: 0.0,
             scale: 1.0,
             remembered_secs: 0.0,
             last_joint_h_secs: 0.0,
             joint_scale: 1.0,
             latest: Latest::default(),
-            lively: false,
+            may_bounce: false,
             bouncing: false,
             deep: deep::Apart::default(),
             until_summed: 0,
@@ -115,7 +87,7 @@ impl<L: Lanes> Default for Solving<L> {
 
 impl<L: Lanes> Solving<L> {
     /// Gives islands their substeps; says whether any has others than before. Then all constraints are to be prepared.
-    pub fn decide_paces(
+    pub fn decide_substep_groups(
         &mut self,
         goal: &Goal,
         bodies: &Bodies<L::Elem>,
@@ -124,54 +96,57 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) -> bool {
         let ends = || joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
-        let looked = self.paces.looks(goal);
+        let looked = self.substep_groups.looks(goal);
         if looked {
             if goal.max_sag.is_some() {
-                self.stream.visit(&mut self.paces.reading());
+                self.stream.visit(&mut self.substep_groups.reading());
             }
-            self.stream.visit(&mut self.paces.touching(goal));
-            self.paces.weigh(goal, bodies, ends());
+            self.stream.visit(&mut self.substep_groups.touching(goal));
+            self.substep_groups.weigh(goal, bodies, ends());
         }
-        let wanted = self.paces.wants(goal, looked);
-        let changed = wanted && self.paces.decide(goal, bodies, manifolds, ends(), &motion.runs, looked);
-        self.paces.count_step(looked);
+        let wanted = self.substep_groups.wants(goal, looked);
+        let changed =
+            wanted && self.substep_groups.decide(goal, bodies, manifolds, ends(), &motion.runs, looked);
+        self.substep_groups.count_step(looked);
         if changed {
             self.hand_back(manifolds, motion);
-            self.paces.scale_impulses(bodies, manifolds);
-            motion.paces.clone_from(self.paces.index());
+            self.substep_groups.scale_impulses(bodies, manifolds);
+            motion.substep_groups.clone_from(self.substep_groups.index());
         }
         changed
     }
 
     /// How often substeps are counted out in a step: once for each number of them.
-    pub fn paces(&self) -> &Paces<L::Elem> {
-        &self.paces
+    pub fn substep_groups(&self) -> &SubstepGroups<L::Elem> {
+        &self.substep_groups
     }
 
-    /// Where there are several paces: passes go over one, until [`Solving::leave_pace`].
-    pub fn enter_pace(&mut self, pace: usize, motion: &mut Motion<L::Elem>) {
-        if self.paces.count() > 1 {
-            self.pace = Some(pace);
-            self.stream.choose(self.pace);
-            motion.pace = Some(L::Elem::from_f64(pace as f64));
-            std::mem::swap(&mut motion.runs, self.paces.runs_mut(pace));
+    /// Where there are several substep groups: passes go over one, until [`Solving::leave_group`].
+    pub fn enter_group(&mut self, substep_group: usize, motion: &mut Motion<L::Elem>) {
+        if self.substep_groups.count() > 1 {
+            self.substep_group = Some(substep_group);
+            self.stream.choose(self.substep_group);
+            motion.substep_group = Some(L::Elem::from_f64(substep_group as f64));
+            std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
         }
     }
 
-    /// After [`Solving::enter_pace`]: passes go over all contacts again. Gaps hear of the last displacements: those of
+    /// After [`Solving::enter_group`]: passes go over all contacts again. Gaps hear of the last displacements: those of
     /// kinematic bodies will be of another substep when the next step begins.
-    pub fn leave_pace(&mut self, pace: usize, motion: &mut Motion<L::Elem>) {
-        if self.pace.take().is_some() {
+    pub fn leave_group(&mut self, substep_group: usize, motion: &mut Motion<L::Elem>) {
+        if self.substep_group.take().is_some() {
             self.stream.visit(&mut Follow { moved: motion.moved.fours() });
             self.stream.choose(None);
-            motion.pace = None;
-            std::mem::swap(&mut motion.runs, self.paces.runs_mut(pace));
+            motion.substep_group = None;
+            std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
         }
     }
 
-    /// Are joints solved in this pace?
+    /// Are joints solved in this substep group?
     fn with_joints(&self) -> bool {
-        self.pace.is_none_or(|pace| self.paces.of_joints() == self.paces.substeps(pace))
+        self.substep_group.is_none_or(|substep_group| {
+            self.substep_groups.of_joints() == self.substep_groups.substeps(substep_group)
+        })
     }
 
     /// Makes constraints of the manifolds found: all of them where the graph of contacts has changed, else those of
@@ -183,14 +158,14 @@ impl<L: Lanes> Solving<L> {
         changed: bool,
         motion: &Motion<L::Elem>,
     ) {
-        self.recut |= changed;
+        self.graph_outdated |= changed;
         if changed {
             self.coloring.run(bodies, manifolds);
-            self.stream.cut(&self.coloring, manifolds, &self.paces);
+            self.stream.cut(&self.coloring, manifolds, &self.substep_groups);
         } else {
             looked_at.for_each(|place| self.stream.touch(place));
         }
-        self.stream.begin(manifolds, motion.matter.fours());
+        self.stream.begin(manifolds, motion.inverse_masses.fours());
         if self.latest != Latest::BeforeDisplacements {
             self.stream.age();
         }
@@ -201,7 +176,7 @@ impl<L: Lanes> Solving<L> {
     pub fn freshen(&mut self, came: bool) {
         self.deep.fresh = true;
         if came {
-            self.paces.freshen();
+            self.substep_groups.freshen();
         }
     }
 
@@ -243,16 +218,16 @@ impl<L: Lanes> Solving<L> {
     /// they are. `awake`: bodies by slot, all if `None`, and how often that has changed.
     pub fn prepare_joints(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
         joints: &Joints<L::Elem>,
         awake: (Option<&[bool]>, u64),
     ) {
-        let substeps = self.paces.of_joints().unwrap_or(task.plan.substeps);
-        let [h_secs, share] = [task.dt_secs / f64::from(substeps), task.plan.impulse_share()];
+        let substeps = self.substep_groups.of_joints().unwrap_or(context.plan.substeps);
+        let [h_secs, share] = [context.dt_secs / f64::from(substeps), context.plan.impulse_share()];
         let last = std::mem::replace(&mut self.last_joint_h_secs, h_secs);
         self.joint_scale = if last > 0.0 { h_secs / last } else { 1.0 };
-        let direct = task.solver == Solver::Soft;
+        let direct = context.solver == Solver::Soft;
         self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0, direct }, awake.1);
         self.joints.place(bodies);
     }
@@ -260,20 +235,20 @@ impl<L: Lanes> Solving<L> {
     /// Before the first substep: what bounces is noted, and where the warm start is said.
     pub fn begin(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> Warm {
-        let (h, last) = (task.plan.h_secs, std::mem::replace(&mut self.last_h_secs, task.plan.h_secs));
+        let (h, last) = (context.plan.h_secs, std::mem::replace(&mut self.last_h_secs, context.plan.h_secs));
         self.scale = if last > 0.0 { h / last } else { 1.0 };
-        self.remembered_secs = task.dt_secs.max(self.remembered_secs * soft::STIFFENING);
-        let lively = task.traits.restitution && pushes(task.solver) && motion.lively;
-        let was_lively = std::mem::replace(&mut self.lively, lively);
-        self.bouncing = lively && self.note_approaches(task, bodies, manifolds, motion);
-        let carries = carries_impulses(task.solver);
+        self.remembered_secs = context.dt_secs.max(self.remembered_secs * soft::STIFFENING);
+        let may_bounce = context.needs.restitution && pushes(context.solver) && motion.may_bounce;
+        let might_bounce = std::mem::replace(&mut self.may_bounce, may_bounce);
+        self.bouncing = may_bounce && self.note_approaches(context, bodies, manifolds, motion);
+        let carries = carries_impulses(context.solver);
         // Joints are placed anew in each step; where approaches were looked at the rows are theirs.
-        let settled = self.joints.is_empty() && !was_lively && !lively && h == last;
+        let settled = self.joints.is_empty() && !might_bounce && !may_bounce && h == last;
         if carries && settled && self.until_summed > 0 {
             self.until_summed -= 1;
             return Warm::Carried;
@@ -291,20 +266,20 @@ impl<L: Lanes> Solving<L> {
     /// Notes how what approaches will part; says whether anything does.
     fn note_approaches(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
-        self.follow_pairs(task, manifolds, motion);
-        motion.load::<L>(task.plan, bodies);
+        self.follow_pairs(context, manifolds, motion);
+        motion.load::<L>(context.plan, bodies);
         self.bounces.resize(self.stream.batches());
         let mut pass = bounce::NoteApproach {
             rows: motion.velocity.fours(),
             accelerations: motion.acceleration.fours(),
             moved: self.latest.yet_to_follow(motion),
-            threshold: L::lit(task.bounce_threshold()),
-            dt_secs: L::lit(task.dt_secs),
+            threshold: L::lit(context.bounce_threshold()),
+            dt_secs: L::lit(context.dt_secs),
             bounces: &mut self.bounces,
             any: false,
         };
@@ -313,55 +288,8 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Joints, then contacts of one substep, before bodies move.
-    pub fn solve(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
-        let h_secs = task.plan.h_secs;
-        // 1 to the bit where all steps have one length.
-        let softened = task.dt_secs / self.remembered_secs.max(task.dt_secs);
-        let rows = motion.velocity.fours_mut();
-        // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
-        let moved = (!first || self.latest == Latest::BeforeDisplacements).then_some(motion.moved.fours());
-        // Joints have: they are placed at a step's beginning.
-        let joints_moved = moved.filter(|_| !first);
-        let scale = if first { self.joint_scale } else { 1.0 };
-        let with_joints = self.with_joints();
-        let share = task.plan.impulse_share();
-        let (stream, joints) = (&mut self.stream, &mut self.joints);
-        match task.solver {
-            Solver::Soft => {
-                if with_joints {
-                    joints.push(rows, None, &Stiffness::soft(h_secs, share));
-                    joints.solve_directly(rows, Some(&Stiffness::soft(h_secs, share)));
-                }
-                let cap = soft::PUSH_CAP * task.traits.length / task.dt_secs;
-                let soft = softened * (task.stiffness / h_secs);
-                let soft = Softness::new(h_secs, soft, soft::DAMPING, cap);
-                let deep = L::lit(-deep::DEEP * task.traits.length);
-                let [share, per_share] = [share, 1.0 / share].each(L::lit);
-                if self.deep.steps > 0 {
-                    stream.visit(&mut soft::Push::<L, true> { rows, moved, soft, deep, share, per_share });
-                } else {
-                    stream.visit(&mut soft::Push::<L, false> { rows, moved, soft, deep, share, per_share });
-                }
-            }
-            Solver::Pgs => {
-                for iteration in 0..pgs::ITERATIONS {
-                    let once = iteration == 0;
-                    joints.push(rows, joints_moved.filter(|_| once), &Stiffness::baumgarte(h_secs));
-                    pgs::iterate(stream, task, rows, moved.filter(|_| once));
-                }
-            }
-            // Bodies move before contacts are seen.
-            Solver::Xpbd | Solver::Avbd => {
-                joints.warm_start(rows, scale, share);
-                joints.push(rows, None, &Stiffness::soft(h_secs, share));
-            }
-            Solver::Impulse => {
-                // One visit leaks less than it takes back: carried from step to step, impulses of chains would grow.
-                joints.warm_start(rows, if first { 0.0 } else { 1.0 }, 1.0);
-                joints.push(rows, joints_moved, &Stiffness::baumgarte(h_secs));
-                impulse::resolve(stream, task, rows, moved);
-            }
-        }
+    pub fn solve(&mut self, context: &SolverContext<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
+        solver_of(context.solver).solve(&mut self.substep(context, motion, first));
         if first {
             self.stream.age();
         }
@@ -370,47 +298,35 @@ impl<L: Lanes> Solving<L> {
     /// Joints, then contacts of one substep, after bodies moved.
     pub fn settle(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        let how = Stiffness::soft(task.plan.h_secs, task.plan.impulse_share());
+        let (mut avbd, mut graph_outdated) = (std::mem::take(&mut self.avbd), self.graph_outdated);
+        let pairs = Pairs { bodies, manifolds, avbd: &mut avbd, graph_outdated: &mut graph_outdated };
+        solver_of(context.solver).relax(&mut self.substep(context, motion, false), pairs);
+        (self.avbd, self.graph_outdated) = (avbd, graph_outdated);
+    }
+
+    fn substep<'a>(
+        &'a mut self,
+        context: &'a SolverContext<'a, L::Elem>,
+        motion: &'a mut Motion<L::Elem>,
+        first: bool,
+    ) -> Substep<'a, L> {
         let with_joints = self.with_joints();
-        let (stream, joints) = (&mut self.stream, &mut self.joints);
-        match task.solver {
-            Solver::Soft => {
-                let (rows, per_sec) = (motion.velocity.fours_mut(), L::lit(1.0 / task.plan.h_secs));
-                if with_joints {
-                    joints.relax(rows, motion.moved.fours(), &how);
-                    joints.solve_directly(rows, None);
-                }
-                if task.traits.friction {
-                    stream.visit(&mut soft::Relax::<L, true> { rows, per_sec });
-                } else {
-                    stream.visit(&mut soft::Relax::<L, false> { rows, per_sec });
-                }
-            }
-            Solver::Pgs => {}
-            Solver::Avbd => {
-                if std::mem::take(&mut self.recut) {
-                    self.avbd.cut(bodies, manifolds);
-                }
-                let pace = avbd::Pace::new(task.plan.h_secs, task.plan.impulse_share(), task.traits.length);
-                self.avbd.settle(manifolds, motion, &pace);
-                joints.relax(motion.velocity.fours_mut(), motion.moved.fours(), &how);
-            }
-            Solver::Xpbd => {
-                let (moved, rows) = (motion.moved.fours_mut(), motion.velocity.fours_mut());
-                xpbd::project(stream, task, moved, rows);
-                joints.relax(rows, moved, &how);
-                xpbd::settle(stream, task, moved, rows);
-            }
-            Solver::Impulse => stream.visit(&mut impulse::Correct {
-                moved: motion.moved.fours_mut(),
-                rows: motion.velocity.fours(),
-                slop: L::lit(impulse::SLOP * task.traits.length),
-            }),
+        Substep {
+            context,
+            stream: &mut self.stream,
+            joints: with_joints.then_some(&mut self.joints),
+            motion,
+            first,
+            // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
+            behind: !first || self.latest == Latest::BeforeDisplacements,
+            deep: self.deep.steps > 0,
+            softened: context.dt_secs / self.remembered_secs.max(context.dt_secs),
+            joint_scale: self.joint_scale,
         }
     }
 

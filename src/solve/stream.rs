@@ -12,7 +12,7 @@
 
 use super::color::Coloring;
 use super::constraint::{Constraint, Parts, Point, Side};
-use super::pace::Paces;
+use super::substep_group::SubstepGroups;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
@@ -142,7 +142,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         }
     }
 
-    fn prepare_stale(&mut self, manifolds: &Manifolds<L::Elem>, matter: &[[L::Elem; 4]]) {
+    fn prepare_stale(&mut self, manifolds: &Manifolds<L::Elem>, inverse_masses: &[[L::Elem; 4]]) {
         for at in 0..self.len() {
             let stale = std::mem::take(&mut self.stale[at]);
             if stale != 0 {
@@ -150,9 +150,9 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
                 let old = self.constraints[at];
                 let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
                 let slots = [&self.a[lanes.clone()], &self.b[lanes.clone()]];
-                self.constraints[at] = prepared(manifolds, matter, &self.place[lanes], slots);
+                self.constraints[at] = prepared(manifolds, inverse_masses, &self.place[lanes], slots);
                 if stale != ALL_LANES {
-                    self.constraints[at].keep_held(&old, stale);
+                    self.constraints[at].keep_velocity_impulses(&old, stale);
                 }
             }
         }
@@ -162,7 +162,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
 #[inline(always)]
 fn prepared<L: Lanes, const POINTS: usize>(
     manifolds: &Manifolds<L::Elem>,
-    matter: &[[L::Elem; 4]],
+    inverse_masses: &[[L::Elem; 4]],
     places: &[u32],
     slots: [&[u32]; 2],
 ) -> Constraint<L, POINTS> {
@@ -173,14 +173,14 @@ fn prepared<L: Lanes, const POINTS: usize>(
         }
     }
     let masses = |slots: &[u32]| {
-        let [inv_mass, inv_inertia, ..] = L::gather_fours(matter, slots);
+        let [inv_mass, inv_inertia, ..] = L::gather_fours(inverse_masses, slots);
         [inv_mass, inv_inertia]
     };
     Constraint::prepare(&Parts {
         geometry: L::gather_rows(manifolds.geometry(), places),
         gap: L::gather_fours(manifolds.gaps(), places),
         impulse: L::gather_fours(manifolds.impulses(), places),
-        matter: slots.each(masses),
+        inverse_masses: slots.each(masses),
         two_points: L::zero().lt(L::load(&two_points)),
     })
 }
@@ -197,13 +197,13 @@ struct Span {
 pub struct Stream<L: Lanes> {
     two: Batches<L, 2>,
     one: Batches<L, 1>,
-    /// Colour by colour within a pace, pace by pace.
+    /// Colour by colour within a substep group, substep group by substep group.
     spans: Vec<Span>,
-    /// Where each pace's spans end.
-    pace_ends: Vec<usize>,
+    /// Where each substep group's spans end.
+    substep_group_ends: Vec<usize>,
     /// The spans passes go over.
     active: std::ops::Range<usize>,
-    /// Places of one colour and pace, while batches are cut.
+    /// Places of one colour and substep group, while batches are cut.
     picked: Vec<u32>,
     /// Per place of a pair.
     batch_of: Vec<Home>,
@@ -215,7 +215,7 @@ impl<L: Lanes> Default for Stream<L> {
             two: Batches::default(),
             one: Batches::default(),
             spans: Vec::new(),
-            pace_ends: Vec::new(),
+            substep_group_ends: Vec::new(),
             active: 0..0,
             picked: Vec::new(),
             batch_of: Vec::new(),
@@ -238,33 +238,38 @@ const NOWHERE: Home = Home { batch: 0, lane: 0, points: 0 };
 const ALL_LANES: u32 = u32::MAX;
 
 impl<L: Lanes> Stream<L> {
-    /// Cuts the colours into batches of at most `WIDTH` contacts, those of each pace apart.
-    pub fn cut(&mut self, coloring: &Coloring, manifolds: &Manifolds<L::Elem>, paces: &Paces<L::Elem>) {
+    /// Cuts the colours into batches of at most `WIDTH` contacts, those of each substep group apart.
+    pub fn cut(
+        &mut self,
+        coloring: &Coloring,
+        manifolds: &Manifolds<L::Elem>,
+        substep_groups: &SubstepGroups<L::Elem>,
+    ) {
         self.two.clear();
         self.one.clear();
         self.spans.clear();
-        self.pace_ends.clear();
+        self.substep_group_ends.clear();
         self.batch_of.clear();
         self.batch_of.resize(manifolds.pairs() + 2, NOWHERE);
-        for pace in 0..paces.count() {
-            self.cut_pace(coloring, manifolds, |place| {
-                paces.of_pair(manifolds.slots(place as usize)) == pace
+        for substep_group in 0..substep_groups.count() {
+            self.cut_substep_group(coloring, manifolds, |place| {
+                substep_groups.of_pair(manifolds.slots(place as usize)) == substep_group
             });
-            self.pace_ends.push(self.spans.len());
+            self.substep_group_ends.push(self.spans.len());
         }
         self.active = 0..self.spans.len();
         let nothing = Parts {
             geometry: [L::zero(); 8],
             gap: [L::zero(); 4],
             impulse: [L::zero(); 4],
-            matter: [[L::zero(); 2]; 2],
+            inverse_masses: [[L::zero(); 2]; 2],
             two_points: L::zero().lt(L::zero()),
         };
         self.two.finish(Constraint::prepare(&nothing));
         self.one.finish(Constraint::prepare(&nothing));
     }
 
-    fn cut_pace(
+    fn cut_substep_group(
         &mut self,
         coloring: &Coloring,
         manifolds: &Manifolds<L::Elem>,
@@ -296,12 +301,14 @@ impl<L: Lanes> Stream<L> {
         self.picked = picked;
     }
 
-    /// Passes go over the contacts of one pace from now on, or over all.
-    pub fn choose(&mut self, pace: Option<usize>) {
-        self.active = match pace {
+    /// Passes go over the contacts of one substep group from now on, or over all.
+    pub fn choose(&mut self, substep_group: Option<usize>) {
+        self.active = match substep_group {
             None => 0..self.spans.len(),
-            Some(0) => 0..self.pace_ends.first().copied().unwrap_or(0),
-            Some(pace) => self.pace_ends[pace - 1]..self.pace_ends[pace],
+            Some(0) => 0..self.substep_group_ends.first().copied().unwrap_or(0),
+            Some(substep_group) => {
+                self.substep_group_ends[substep_group - 1]..self.substep_group_ends[substep_group]
+            }
         };
     }
 
@@ -317,10 +324,10 @@ impl<L: Lanes> Stream<L> {
         stale[home.batch as usize] |= 1 << home.lane;
     }
 
-    /// Prepares the batches whose manifolds are new; `matter` has rows 1/m, 1/I, –, – per slot.
-    pub fn begin(&mut self, manifolds: &Manifolds<L::Elem>, matter: &[[L::Elem; 4]]) {
-        self.two.prepare_stale(manifolds, matter);
-        self.one.prepare_stale(manifolds, matter);
+    /// Prepares the batches whose manifolds are new; `inverse_masses` has rows 1/m, 1/I, –, – per slot.
+    pub fn begin(&mut self, manifolds: &Manifolds<L::Elem>, inverse_masses: &[[L::Elem; 4]]) {
+        self.two.prepare_stale(manifolds, inverse_masses);
+        self.one.prepare_stale(manifolds, inverse_masses);
     }
 
     /// One pass over the contacts chosen: colour by colour, two-point contacts first, the overflow last.
@@ -409,7 +416,7 @@ impl<L: Lanes> Visit<L> for WarmStart<'_, L::Elem> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let share = L::splat(self.share);
         for point in &mut c.points {
-            point.held = point.held * share;
+            point.velocity_impulse = point.velocity_impulse * share;
         }
         c.tangent_impulse = c.tangent_impulse * share;
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));

@@ -18,9 +18,11 @@
 //!   and at mass ratios from 1000 on the lower box is pushed through the floor. Figures: [`super`].
 //! * **Impulses.** λ/(h·share) is what friction in [`Settle`] is bounded by, and what a report shows.
 
-use super::Task;
+use super::SolverContext;
 use super::block::{cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
+use super::joint::Stiffness;
+use super::scheme::{ContactSolver, Pairs, Substep};
 use super::stream::{Ends, Stream, Visit};
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes};
@@ -32,17 +34,17 @@ const COMPLIANCE: f64 = 0.0;
 const PUSH_CAP: f64 = 0.1;
 
 /// [`Project`] for all contacts.
-pub(super) fn project<L: Lanes>(
+fn project<L: Lanes>(
     stream: &mut Stream<L>,
-    task: &Task<'_, L::Elem>,
+    context: &SolverContext<'_, L::Elem>,
     moved: &mut [[L::Elem; 4]],
     rows: &mut [[L::Elem; 4]],
 ) {
-    let h_secs = task.plan.h_secs;
-    let cap = PUSH_CAP * task.traits.length / f64::from(task.plan.substeps);
-    let per_sec = L::lit(1.0 / (h_secs * task.plan.impulse_share()));
+    let h_secs = context.plan.h_secs;
+    let cap = PUSH_CAP * context.needs.length / f64::from(context.plan.substeps);
+    let per_sec = L::lit(1.0 / (h_secs * context.plan.impulse_share()));
     let (softness, push_cap) = (L::lit(COMPLIANCE / (h_secs * h_secs)), L::lit(-cap));
-    if task.traits.friction {
+    if context.needs.friction {
         stream.visit(&mut Project::<L, true> { moved, rows, softness, per_sec, push_cap });
     } else {
         stream.visit(&mut Project::<L, false> { moved, rows, softness, per_sec, push_cap });
@@ -50,14 +52,14 @@ pub(super) fn project<L: Lanes>(
 }
 
 /// [`Settle`] for all contacts.
-pub(super) fn settle<L: Lanes>(
+fn settle<L: Lanes>(
     stream: &mut Stream<L>,
-    task: &Task<'_, L::Elem>,
+    context: &SolverContext<'_, L::Elem>,
     moved: &[[L::Elem; 4]],
     rows: &mut [[L::Elem; 4]],
 ) {
-    let per_sec = L::lit(1.0 / task.plan.h_secs);
-    if task.traits.friction {
+    let per_sec = L::lit(1.0 / context.plan.h_secs);
+    if context.needs.friction {
         stream.visit(&mut Settle::<L, true> { moved, rows, per_sec });
     } else {
         stream.visit(&mut Settle::<L, false> { moved, rows, per_sec });
@@ -103,7 +105,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
         c.tangent_impulse = zero;
         let touches = pushed.iter().any(|push| zero.lt(*push).any());
         for k in 0..POINTS {
-            c.points[k].held = pushed[k] * soften[k];
+            c.points[k].velocity_impulse = pushed[k] * soften[k];
         }
         if !touches {
             return;
@@ -117,7 +119,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
         }
         // The same λ, as impulses.
         for point in &mut c.points {
-            point.held = point.held * self.per_sec;
+            point.velocity_impulse = point.velocity_impulse * self.per_sec;
         }
         c.tangent_impulse = c.tangent_impulse * self.per_sec;
         c.apply_accumulated(&mut va, &mut vb);
@@ -144,20 +146,20 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         c.follow(self.moved, &ends);
         let zero = L::zero();
-        let held = c.points.each(|point| point.held);
-        if !held.iter().any(|held| zero.lt(*held).any()) {
+        let velocity_impulse = c.points.each(|point| point.velocity_impulse);
+        if !velocity_impulse.iter().any(|velocity_impulse| zero.lt(*velocity_impulse).any()) {
             return;
         }
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
         let mut normals = Normals::begin(c, &a, &b);
         let next = relaxed(c, &normals, self.per_sec);
         // Lanes that carry nothing are as if visited alone.
-        let carries = held.iter().fold(zero, |sum, held| sum + *held);
+        let carries = velocity_impulse.iter().fold(zero, |sum, velocity_impulse| sum + *velocity_impulse);
         let carries = zero.lt(carries);
-        let next: [L; POINTS] = crate::each::indexed(|k| L::select(carries, next[k], held[k]));
+        let next: [L; POINTS] = crate::each::indexed(|k| L::select(carries, next[k], velocity_impulse[k]));
         for k in 0..POINTS {
-            normals.push(c, k, c.points[k].mass * (next[k] - held[k]));
-            c.points[k].held = next[k];
+            normals.push(c, k, c.points[k].mass * (next[k] - velocity_impulse[k]));
+            c.points[k].velocity_impulse = next[k];
         }
         normals.end(c, &mut a, &mut b);
         if FRICTION {
@@ -165,5 +167,26 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Settle<'_, L, FRICTION> {
         }
         a.scatter(self.rows, ends.a);
         b.scatter(self.rows, ends.b);
+    }
+}
+
+/// The solver.
+#[derive(Debug)]
+pub(super) struct Xpbd;
+
+impl<L: Lanes> ContactSolver<L> for Xpbd {
+    fn solve(&self, substep: &mut Substep<'_, L>) {
+        // Bodies move before contacts are seen.
+        substep.push_joints();
+    }
+
+    fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
+        let how = Stiffness::soft(substep.h_secs(), substep.share());
+        let (moved, rows) = (substep.motion.moved.fours_mut(), substep.motion.velocity.fours_mut());
+        project(substep.stream, substep.context, moved, rows);
+        if let Some(joints) = &mut substep.joints {
+            joints.relax(rows, moved, &how);
+        }
+        settle(substep.stream, substep.context, moved, rows);
     }
 }

@@ -22,6 +22,7 @@ mod engine {
     mod fields;
     mod fuzz;
     mod golden;
+    mod interface;
     mod joints;
     mod motion_laws;
     mod motion_orders;

@@ -68,9 +68,10 @@ impl<L: Lanes> World<L> {
         self.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
-        let (fields_set, steps, time_secs, times) = (self.fields_set, self.steps, self.time_secs, self.times);
+        let (fields_set, steps, time_secs) = (self.fields_set, self.steps, self.time_secs);
+        let stopwatch = self.stopwatch;
         let anew = Self::from_parts(bodies, joints, self.forces, settings)?;
-        *self = Self { fields_set, steps, time_secs, times, ..anew };
+        *self = Self { fields_set, steps, time_secs, stopwatch, ..anew };
         Ok(())
     }
 
@@ -100,7 +101,7 @@ impl<L: Lanes> World<L> {
     /// # Errors
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
-        self.motion.stir_up();
+        self.motion.assume_fast_bodies();
         self.watchdog.forget();
         self.bodies.apply_impulse(id, linear, angular)?;
         self.islands.wake(id.slot());
@@ -111,11 +112,10 @@ impl<L: Lanes> World<L> {
     pub fn bodies(&self) -> &Bodies<L::Elem> {
         &self.bodies
     }
-    /// The columns, to change: poses and velocities directly, forces by [`Bodies::set_force`]. Wakes all.
+    /// The columns, to change: any of them directly, forces by [`Bodies::set_force`]. Wakes all; the next step looks over
+    /// all bodies, so that masses, surfaces and what the scene needs are those that were written.
     pub fn bodies_mut(&mut self) -> &mut Bodies<L::Elem> {
-        self.disturbed = true;
-        self.watchdog.forget();
-        self.motion.stir_up();
+        self.look_again();
         self.islands.wake_all();
         &mut self.bodies
     }
@@ -156,13 +156,18 @@ impl<L: Lanes> World<L> {
     pub fn counts(&self) -> &Counts {
         &self.counts
     }
-    /// Time per stage since the last [`World::reset_times`].
+    /// Time per stage since the last [`World::reset_times`]: of every step, or of every sixteenth of a world of fewer than
+    /// 64 bodies, which would wait for the clock longer than for some of its stages.
     pub fn times(&self) -> &StageTimes {
-        &self.times
+        self.stopwatch.times()
     }
-    /// Sets the stage times to zero.
+    /// Sets the stage times to zero; the next step is timed.
     pub fn reset_times(&mut self) {
-        self.times = StageTimes::default();
+        self.stopwatch.reset();
+    }
+    /// From now on every step is timed, whatever the number of bodies: for recordings.
+    pub fn time_every_step(&mut self) {
+        self.stopwatch.time_every_step();
     }
     /// xxh3 over pose and velocity of all living bodies; see [`state_hash`].
     pub fn hash(&self) -> u64 {

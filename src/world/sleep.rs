@@ -5,7 +5,7 @@
 //! | [`World::rests`], as it begins | ends it if all that can move sleeps; else brings the runs up to date with who is awake |
 //! | [`World::regroup`], before pairs are chosen | sorts them into those that are looked at and those that rest |
 //! | [`World::wake_touched`], when contacts are found | no contact that is solved has a sleeping end |
-//! | [`World::doze`], as it ends | who has been quiet for long enough falls asleep |
+//! | [`World::update_sleep`], as it ends | who has been quiet for long enough falls asleep |
 //!
 //! Constraints are handed back to the pairs before the runs change: gaps and impulses of what falls asleep stay
 //! there, and those of what wakes are taken from there. Such a step is never a still one, so that manifolds'
@@ -31,7 +31,6 @@ impl<L: Lanes> World<L> {
     /// Is there nothing to do, because all that can move sleeps? Else brings the runs up to date.
     pub(super) fn rests(&mut self) -> bool {
         if self.islands.is_still(&self.bodies) {
-            self.times.steps += 1;
             return true;
         }
         self.follow_islands();
@@ -72,14 +71,14 @@ impl<L: Lanes> World<L> {
             self.narrow.manifolds.refresh();
             woke = true;
         }
-        // What woke has no pairs but those it touches: the next step looks for more, whether anything stirs or not.
+        // What woke has no pairs but those it touches: the next step looks for more, whether anything moves or not.
         self.regrouped |= woke;
     }
 
     /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
-    pub(super) fn doze(&mut self, dt_secs: f64, changed: bool) {
+    pub(super) fn update_sleep(&mut self, dt_secs: f64, changed: bool) {
         let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
-        let tired = self.islands.tire::<L>(&self.bodies, runs, dt_secs, self.traits.gravity);
+        let tired = self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.needs.gravity);
         if tired.newly || (tired.some && changed) {
             self.islands.settle(&mut self.bodies, manifolds, runs, !self.fields.is_empty());
         }
@@ -121,7 +120,7 @@ impl<L: Lanes> World<L> {
         forces.check_coupling(self.bodies.len(), &self.settings)?;
         self.forces = forces;
         self.fields_set += 1;
-        self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));
+        self.look_again();
         self.islands.wake_all();
         Ok(())
     }

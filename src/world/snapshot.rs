@@ -55,7 +55,7 @@ impl<L: Lanes> World<L> {
         into.width = if bodies.fine.is_some() { size_of::<f64>() } else { into.contact_width };
         into.slots = slots;
         into.counts = self.counts;
-        into.times = self.times;
+        into.times = *self.stopwatch.times();
         into.revision = [bodies.revision(), bodies.removals(), self.fields_set];
         into.columns.clear();
         if bodies.fine.is_some() {

@@ -113,6 +113,9 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     if scene.bodies.is_empty() {
         output::warn(&format!("{}: no [[body]]: the scene is empty, and nothing will move", scene.name));
     }
+    if args.record.is_some() {
+        world.time_every_step();
+    }
     let recorder =
         args.record.as_ref().map(|path| Recorder::create(path, &scene, world.as_ref(), args.every));
     let mut recorder = recorder.transpose().map_err(refuse)?;

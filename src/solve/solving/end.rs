@@ -2,30 +2,33 @@
 
 use super::{Follow, Latest, Solving};
 use crate::contact::Manifolds;
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::motion::Motion;
 use crate::settings::Solver;
-use crate::solve::{Task, bounce, deep, soft};
+use crate::solve::bounce::{self, MoveOut};
+use crate::solve::{SolverContext, deep, soft};
 
 impl<L: Lanes> Solving<L> {
     /// After the last substep: bounces, and deep overlaps.
     pub fn end(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        let settled = self.paces.count() > 1 || matches!(task.solver, Solver::Xpbd | Solver::Avbd);
+        let settled =
+            self.substep_groups.count() > 1 || matches!(context.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing {
-            self.follow_pairs(task, manifolds, motion);
-            if self.bounce(task, motion, settled) && task.solver == Solver::Avbd {
+            self.follow_pairs(context, manifolds, motion);
+            if self.bounce(context, motion, settled) && context.solver == Solver::Avbd {
                 self.stream.end_where(false, manifolds, None);
             }
         }
-        if self.deep.steps > 0 && task.solver == Solver::Soft {
-            self.deep.steps = if self.part_deep(task, motion, settled) { self.deep.steps - 1 } else { 0 };
+        if self.deep.steps > 0 && context.solver == Solver::Soft {
+            self.deep.steps = if self.part_deep(context, motion, settled) { self.deep.steps - 1 } else { 0 };
         }
-        self.latest = if task.solver == Solver::Avbd {
+        self.latest = if context.solver == Solver::Avbd {
             Latest::InPairs
         } else if settled {
             Latest::InConstraints
@@ -35,37 +38,43 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Gives bounces their impulses and displacements; says whether there were any.
-    fn bounce(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
+    fn bounce(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        motion: &mut Motion<L::Elem>,
+        settled: bool,
+    ) -> bool {
         let Self { displaced, stream, bounces, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours());
         // Left as zeros by what was displaced before.
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
         let before = (!settled).then_some(moved);
-        let touch = L::lit(task.traits.touch());
+        let touch = L::lit(context.needs.touch());
         let mut pass = bounce::Bounce { rows, displaced, touch, moved: before, bounces, any: false };
         stream.visit(&mut pass);
         if !pass.any {
             return false;
         }
-        stream.visit(&mut bounce::Part { rows, displaced, moved: before });
+        let entered = bounce::by_bounces::<L>;
+        stream.visit(&mut MoveOut { rows, displaced, moved: before, entered, any: false });
         self.displace(motion, settled);
         true
     }
 
     /// Moves what is deep in something else out of it; says whether anything is.
-    fn part_deep(&mut self, task: &Task<'_, L::Elem>, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
+    fn part_deep(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        motion: &mut Motion<L::Elem>,
+        settled: bool,
+    ) -> bool {
         let Self { displaced, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours(), motion.moved.fours());
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
-        let (deep, most) = (deep::DEEP * task.traits.length, soft::PUSH_CAP * task.traits.length);
-        let mut pass = deep::PartDeep {
-            rows,
-            displaced,
-            moved: (!settled).then_some(moved),
-            deep: L::lit(deep),
-            most: L::lit(most),
-            any: false,
-        };
+        let [deep, most] = [deep::DEEP, soft::PUSH_CAP].each(|share| L::lit(share * context.needs.length));
+        let entered = |gap, way, mass| deep::owed(deep, most, [gap, way, mass]);
+        let moved = (!settled).then_some(moved);
+        let mut pass = MoveOut { rows, displaced, moved, entered, any: false };
         stream.visit(&mut pass);
         let any = pass.any;
         if any {
@@ -91,15 +100,15 @@ impl<L: Lanes> Solving<L> {
     /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
     pub(super) fn follow_pairs(
         &mut self,
-        task: &Task<'_, L::Elem>,
+        context: &SolverContext<'_, L::Elem>,
         manifolds: &Manifolds<L::Elem>,
         motion: &Motion<L::Elem>,
     ) {
-        if task.solver == Solver::Avbd {
+        if context.solver == Solver::Avbd {
             for &place in manifolds.touching() {
                 self.stream.touch(place);
             }
-            self.stream.begin(manifolds, motion.matter.fours());
+            self.stream.begin(manifolds, motion.inverse_masses.fours());
         }
     }
 }

@@ -221,7 +221,7 @@ fn no_pile_gains_energy() {
     }
 }
 
-/// A settled pile with and without reused manifolds: overlaps agree within the stated bound of reuse, 4·STIR·radius.
+/// A settled pile with and without reused manifolds: overlaps agree within the stated bound of reuse, 4·CONTACT_REUSE_DISTANCE·radius.
 #[test]
 fn reused_manifolds_keep_overlaps_within_their_bound() {
     for name in ["stack/10", "polygons/60", "all/60"] {
@@ -233,7 +233,7 @@ fn reused_manifolds_keep_overlaps_within_their_bound() {
         let (with, without) = (by(Skips::ALL), by(Skips::ALL.without(Skip::ManifoldReuse)));
         assert!(with.2.skipped[Skip::ManifoldReuse as usize] > 0, "{name} reuses nothing");
         assert_eq!(without.2.skipped[Skip::ManifoldReuse as usize], 0);
-        let bound = 4.0 * lamina2d::internals::STIR * 0.7;
+        let bound = 4.0 * lamina2d::internals::CONTACT_REUSE_DISTANCE * 0.7;
         assert!((with.0 - without.0).abs() < bound, "{name}: {} m and {} m", with.0, without.0);
         assert!(with.1 < 1e-2, "{name} does not rest: {} m/s", with.1);
     }

@@ -171,7 +171,7 @@ fn links_make_one_island_and_wake_both_ends_when_they_go() {
         let everywhere = 0..bodies.len();
         let runs = std::slice::from_ref(&everywhere);
         for _ in 0..31 {
-            islands.tire::<f32s::X8>(bodies, runs, DT_SECS, 0.0);
+            islands.accumulate_quiet_time::<f32s::X8>(bodies, runs, DT_SECS, 0.0);
         }
         islands.settle(bodies, &none_touch, runs, false);
         [1, 2, 3].map(|slot| islands.is_asleep(slot))

@@ -161,6 +161,7 @@ fn steps(
     world: &mut dyn Simulation,
     path: &Path,
 ) -> anyhow::Result<(f64, f64, lamina2d::record::Recorded)> {
+    world.time_every_step();
     let mut recorder = Recorder::create(path, scene, world, 1)?;
     let mut bare = world.duplicate();
     let (mut bare_ms, mut recorded_ms) = (Vec::new(), Vec::new());

@@ -107,9 +107,9 @@ const CHOICES: [(Solver, Substeps); 9] = [
 pub enum Substeps {
     /// The same number for all.
     Fixed(u32),
-    /// More for islands with a slender stack; see `solve::tower` of the engine.
+    /// More for islands with a slender stack; see `solve::slender_stack` of the engine.
     AtLeast(u32),
-    /// Per island, for contacts that sag by so much at most, metres; see `solve::pace` of the engine.
+    /// Per island, for contacts that sag by so much at most, metres; see `solve::substep_group` of the engine.
     ForSag(f64),
 }
 

@@ -32,7 +32,7 @@ impl Trees {
         let ends: Vec<_> = ends.collect();
         let mut on = vec![Vec::new(); slots];
         let mut sets = Sets::default();
-        sets.part(slots, &[0..slots]);
+        sets.part(slots, std::slice::from_ref(&(0..slots)));
         let mut wanted = vec![true; slots];
         for (k, &[a, b]) in ends.iter().enumerate() {
             for slot in [a, b].into_iter().filter(|&slot| moves(slot)) {

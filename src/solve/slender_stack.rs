@@ -16,8 +16,8 @@
 //! and an impact asks for nothing.
 
 use super::constraint::Constraint;
-use super::pace::Goal;
 use super::stream::{Ends, Visit};
+use super::substep_group::Goal;
 use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
@@ -56,14 +56,14 @@ struct Part {
 
 /// Slender stacks; memory is kept from look to look.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Towers {
+pub(crate) struct SlenderStacks {
     edges: Vec<Edge>,
     parts: Vec<Part>,
     /// Slots with one contact left.
     loose: Vec<u32>,
 }
 
-impl Towers {
+impl SlenderStacks {
     /// A visitor that notes contacts whose gap is at most `touch`, metres, or that carry something.
     pub(super) fn reading<L: Lanes>(&mut self, touch: f64) -> Touching<'_, L> {
         self.edges.clear();
@@ -174,7 +174,7 @@ impl<L: Lanes> Visit<L> for Touching<'_, L> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let zero = L::zero();
         let touches = c.points.each(|point| {
-            let near = zero.lt(point.held) | point.separation.le(self.touch);
+            let near = zero.lt(point.velocity_impulse) | point.separation.le(self.touch);
             L::select(near & zero.lt(point.mass), point.mass, zero).to_array()
         });
         let levers = c.points.each(|point| point.levers[0].to_array());

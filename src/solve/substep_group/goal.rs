@@ -4,7 +4,7 @@ use crate::each::Each as _;
 use crate::force::Forces;
 use crate::lanes::Real;
 use crate::settings::{Settings, Solver};
-use crate::solve::Task;
+use crate::solve::SolverContext;
 
 /// Numbers of substeps an island may have.
 pub(crate) const RUNGS: [u32; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
@@ -40,12 +40,12 @@ pub struct Goal {
 impl Goal {
     /// What islands of a step are paced by; `None` where all have one number. Bodies that attract each
     /// other must be in step.
-    pub fn of<R: Real>(task: &Task<'_, R>, settings: &Settings, forces: &Forces) -> Option<Self> {
-        let Task { dt_secs, stiffness, plan, .. } = *task;
+    pub fn of<R: Real>(context: &SolverContext<'_, R>, settings: &Settings, forces: &Forces) -> Option<Self> {
+        let SolverContext { dt_secs, stiffness, plan, .. } = *context;
         let (max_sag, base, share) = (settings.max_sag, plan.substeps, plan.impulse_share());
         let looks_for_towers =
-            task.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
-        let (gravity, touch) = (forces.gravity.unwrap_or_default(), task.traits.touch());
+            context.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
+        let (gravity, touch) = (forces.gravity.unwrap_or_default(), context.needs.touch());
         let paced = max_sag.is_some() || looks_for_towers;
         paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, gravity, touch })
     }
@@ -80,7 +80,7 @@ pub(super) struct Island {
     /// N/m_eff·dt of its hardest contact, m/s: what both of the last looks saw, and what one of them did.
     pub(super) load: [f64; 2],
     /// Substeps its most slender stack takes.
-    pub(super) tower: f64,
+    pub(super) slender_stack: f64,
     /// The most a part of it has had.
     pub(super) substeps: u32,
     /// Something touches or is joined.
@@ -91,13 +91,13 @@ pub(super) struct Island {
 
 /// What an island should have after a look; `fresh`: before it has sagged.
 pub(super) fn aimed(goal: &Goal, island: &Island, fresh: bool) -> u32 {
-    let hopeless = !fresh && island.tower > HOPELESS * f64::from(island.substeps);
-    let tower = if hopeless { 0.0 } else { island.tower };
-    if fresh && tower > f64::from(island.substeps) {
-        let enough = RUNGS.into_iter().find(|&n| f64::from(n) >= tower);
+    let hopeless = !fresh && island.slender_stack > HOPELESS * f64::from(island.substeps);
+    let slender_stack = if hopeless { 0.0 } else { island.slender_stack };
+    if fresh && slender_stack > f64::from(island.substeps) {
+        let enough = RUNGS.into_iter().find(|&n| f64::from(n) >= slender_stack);
         return enough.unwrap_or(RUNGS[RUNGS.len() - 1]).max(island.substeps);
     }
-    let [both, either] = island.load.each(|load| goal.needed(load).max(tower));
+    let [both, either] = island.load.each(|load| goal.needed(load).max(slender_stack));
     let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
     let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {

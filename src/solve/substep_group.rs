@@ -1,6 +1,6 @@
 //! Substeps per island: hard piles get more, quiet ones fewer.
 //!
-//! Unless substeps are fixed, an island in which a slender stack would buckle gets those that [`tower`](super::tower)
+//! Unless substeps are fixed, an island in which a slender stack would buckle gets those that [`slender_stack`](super::slender_stack)
 //! asks for: always on, as it costs a look every [`TOWER_STEPS`] steps until there is one. A bound on the sag is asked
 //! for by the settings.
 //!
@@ -8,7 +8,7 @@
 //! step of dt, by (N/m_eff)·dt²/(n²·(2π·hz·h)²). With a bound on the sag each island has the n its hardest contact asks for.
 //!
 //! * Every [`LOOK_STEPS`] steps loads are read from the impulses, and at once where contacts come or go islands are
-//!   joined anew: what touches has one pace, the highest of its parts.
+//!   joined anew: what touches has one substep group, the highest of its parts.
 //! * Numbers of substeps are `RUNGS`. An island climbs a rung where two looks in a row see a load that asks for it
 //!   (an impact asks for nothing), and comes down one where two see less, with a quarter to spare. One rung a look:
 //!   made stiff at once, a column of twelve that had sunk under 2 substeps leapt up with 0.7 m/s under 12. Slender
@@ -17,7 +17,7 @@
 //!   with joints has at least the number of the settings, and all such islands have one number.
 //! * Impulses belong to a substep: where it changes they are scaled.
 //!
-//! Paces run one after another; in each, lanes of bodies with another pace keep their rows. Static and kinematic
+//! Substep groups run one after another; in each, lanes of bodies with another substep group keep their rows. Static and kinematic
 //! bodies take part in all.
 
 mod goal;
@@ -25,8 +25,8 @@ mod goal;
 use std::ops::Range;
 
 use super::constraint::Constraint;
+use super::slender_stack::{SlenderStacks, Touching};
 use super::stream::{Ends, Visit};
-use super::tower::{Touching, Towers};
 use crate::body::{Bodies, BodyKind};
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
@@ -45,12 +45,12 @@ pub(crate) const TOWER_STEPS: u32 = 32;
 
 /// Who has which number of substeps; memory is kept from step to step.
 #[derive(Clone, Debug)]
-pub struct Paces<R: Real> {
+pub struct SubstepGroups<R: Real> {
     /// In use, ascending.
     substeps: Vec<u32>,
     /// The slots each goes over, as [`crate::motion::Motion::runs`].
     runs: Vec<Vec<Range<usize>>>,
-    /// Substeps per slot; not empty only where islands are paced.
+    /// Substeps per slot; not empty only where islands have their own.
     of_slot: Vec<u32>,
     before: Vec<u32>,
     /// Which of `substeps` a slot has.
@@ -58,8 +58,8 @@ pub struct Paces<R: Real> {
     /// N/m_eff·dt per slot, of this look and the last, m/s.
     load: [Vec<f64>; 2],
     /// Substeps it takes per slot to keep stacks from buckling.
-    tower_needs: Vec<f64>,
-    towers: Towers,
+    slender_stack_needs: Vec<f64>,
+    slender_stacks: SlenderStacks,
     /// Bodies have come since the last look: what they stand on has hardly sagged yet.
     fresh: bool,
     /// Islands, while they are looked for.
@@ -71,7 +71,7 @@ pub struct Paces<R: Real> {
     steps: u32,
 }
 
-impl<R: Real> Default for Paces<R> {
+impl<R: Real> Default for SubstepGroups<R> {
     fn default() -> Self {
         Self {
             substeps: vec![0],
@@ -80,8 +80,8 @@ impl<R: Real> Default for Paces<R> {
             before: Vec::new(),
             index: Column::new(R::ZERO),
             load: Default::default(),
-            tower_needs: Vec::new(),
-            towers: Towers::default(),
+            slender_stack_needs: Vec::new(),
+            slender_stacks: SlenderStacks::default(),
             fresh: true,
             sets: Sets::default(),
             islands: Vec::new(),
@@ -91,28 +91,28 @@ impl<R: Real> Default for Paces<R> {
     }
 }
 
-impl<R: Real> Paces<R> {
-    /// Paces in use: 1 where islands are not paced.
+impl<R: Real> SubstepGroups<R> {
+    /// SubstepGroups in use: 1 where islands are not paced.
     pub fn count(&self) -> usize {
         self.substeps.len()
     }
-    /// Substeps of a pace, where islands are paced.
-    pub fn substeps(&self, pace: usize) -> Option<u32> {
-        self.substeps.get(pace).copied().filter(|&n| n > 0)
+    /// Substeps of a substep group, where islands have their own.
+    pub fn substeps(&self, substep_group: usize) -> Option<u32> {
+        self.substeps.get(substep_group).copied().filter(|&n| n > 0)
     }
-    /// The least and the most substeps in use, where islands are paced.
+    /// The least and the most substeps in use, where islands have their own.
     pub fn span(&self) -> Option<[u32; 2]> {
         Some([self.substeps(0)?, self.substeps(self.count() - 1)?])
     }
-    /// The slots a pace goes over.
-    pub fn runs_mut(&mut self, pace: usize) -> &mut Vec<Range<usize>> {
-        &mut self.runs[pace]
+    /// The slots a substep group goes over.
+    pub fn runs_mut(&mut self, substep_group: usize) -> &mut Vec<Range<usize>> {
+        &mut self.runs[substep_group]
     }
-    /// Which pace each slot has.
+    /// Which substep group each slot has.
     pub fn index(&self) -> &Column<R> {
         &self.index
     }
-    /// The pace of a pair that touches. What nothing moves has the first.
+    /// The substep group of a pair that touches. What nothing moves has the first.
     pub fn of_pair(&self, slots: [u32; 2]) -> usize {
         if self.count() == 1 {
             return 0;
@@ -121,7 +121,7 @@ impl<R: Real> Paces<R> {
         a.max(b)
     }
 
-    /// Substeps of all islands with joints, where islands are paced.
+    /// Substeps of all islands with joints, where islands have their own.
     pub fn of_joints(&self) -> Option<u32> {
         self.joined
     }
@@ -145,7 +145,7 @@ impl<R: Real> Paces<R> {
 
     /// Are islands to be told apart in this step? `looked`: it began with a look.
     pub fn wants(&self, goal: &Goal, looked: bool) -> bool {
-        let asked = || self.tower_needs.iter().any(|&needs| needs > f64::from(goal.base));
+        let asked = || self.slender_stack_needs.iter().any(|&needs| needs > f64::from(goal.base));
         self.is_paced() || goal.max_sag.is_some() || (looked && asked())
     }
 
@@ -165,15 +165,15 @@ impl<R: Real> Paces<R> {
 
     /// A visitor that notes what touches.
     pub(super) fn touching<L: Lanes>(&mut self, goal: &Goal) -> Touching<'_, L> {
-        self.towers.reading(goal.touch)
+        self.slender_stacks.reading(goal.touch)
     }
 
     /// What stacks need, by what has been noted. `joints`: the slots they join.
     pub fn weigh(&mut self, goal: &Goal, bodies: &Bodies<R>, joints: impl Iterator<Item = [u32; 2]>) {
-        self.towers.look(goal, bodies, joints, &mut self.tower_needs);
+        self.slender_stacks.look(goal, bodies, joints, &mut self.slender_stack_needs);
     }
 
-    /// Decides who has which pace; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the
+    /// Decides who has which substep group; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the
     /// step began with a look.
     pub fn decide(
         &mut self,
@@ -187,7 +187,7 @@ impl<R: Real> Paces<R> {
         let resized = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        for per_slot in self.load.iter_mut().chain([&mut self.tower_needs]) {
+        for per_slot in self.load.iter_mut().chain([&mut self.slender_stack_needs]) {
             per_slot.resize(bodies.len(), 0.0);
         }
         self.join(bodies, manifolds, joints, runs);
@@ -256,14 +256,14 @@ impl<R: Real> Paces<R> {
             let island = &mut self.islands[at];
             let [now, last] = self.load.each_ref().each(|load| load[slot]);
             island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
-            island.tower = island.tower.max(self.tower_needs[slot]);
+            island.slender_stack = island.slender_stack.max(self.slender_stack_needs[slot]);
             island.substeps = island.substeps.max(self.of_slot[slot]);
             island.touches |= own.touches;
             island.joined |= own.joined;
         }
     }
 
-    /// The paces in use and where their bodies are.
+    /// The substep groups in use and where their bodies are.
     fn sort(&mut self, goal: &Goal, bodies: &Bodies<R>, runs: &[Range<usize>]) {
         self.substeps.clear();
         let slots = || runs.iter().cloned().flatten();
@@ -325,7 +325,7 @@ pub struct Loads<'a> {
 
 impl<L: Lanes> Visit<L> for Loads<'_> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        let held = c.points.iter().fold(L::zero(), |most, point| most.max(point.held)).to_array();
+        let held = c.points.iter().fold(L::zero(), |most, point| most.max(point.velocity_impulse)).to_array();
         for (lane, held) in held.iter().enumerate().take(L::WIDTH) {
             for slot in [ends.a[lane], ends.b[lane]].each(|slot| slot as usize) {
                 // Bodies come and go between a step and the next.

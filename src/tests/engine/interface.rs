@@ -1,0 +1,72 @@
+//! What a world says of itself is what it does: lanes, precision, step; and what is written into its columns counts.
+
+use lamina2d::lanes::{Lanes, f32s, f64s};
+use lamina2d::scene::{Scene, by_name};
+use lamina2d::settings::{Precision, Settings};
+use lamina2d::simulation::{Simulation, simulate};
+use lamina2d::world::World;
+
+fn says<L: Lanes>(precision: Precision) {
+    let scene = by_name("stack/3", None, 1).unwrap();
+    let mut world = World::<L>::from_scene(&scene, Settings::default()).unwrap();
+    let settings = *world.settings();
+    assert_eq!((settings.lanes, settings.precision), (L::WIDTH, precision));
+    world.set_settings(settings).unwrap();
+    let mut same = simulate(&scene, settings).unwrap();
+    for _ in 0..30 {
+        world.step(scene.dt_secs).unwrap();
+        same.step(scene.dt_secs).unwrap();
+    }
+    assert_eq!(world.hash(), same.hash());
+}
+
+#[test]
+fn a_world_says_lanes_and_precision_of_its_type() {
+    says::<f32s::X1>(Precision::F32);
+    says::<f32s::X4>(Precision::F32);
+    says::<f32s::X8>(Precision::F32);
+    says::<f32s::X16>(Precision::F32);
+    says::<f64s::X1>(Precision::F64);
+    says::<f64s::X4>(Precision::F64);
+}
+
+#[test]
+fn the_step_is_that_of_the_settings() {
+    let scene = by_name("stack/3", None, 1).unwrap();
+    let mut one = simulate(&scene, Settings { dt_secs: 0.01, ..Settings::default() }).unwrap();
+    let mut other = simulate(&scene, Settings::default()).unwrap();
+    for _ in 0..20 {
+        one.advance().unwrap();
+        other.step(0.01).unwrap();
+    }
+    assert_eq!((one.settings().dt_secs, other.settings().dt_secs), (0.01, 0.01));
+    other.advance().unwrap();
+    one.step(0.01).unwrap();
+    assert_eq!(one.hash(), other.hash());
+    assert!(other.step(f64::NAN).is_err());
+    assert_eq!(other.settings().dt_secs, 0.01, "a step that is refused changes nothing");
+}
+
+/// A block slides on ice that turns rough under it, by a hand that writes into columns: it stops as on rough ground.
+#[test]
+fn friction_written_into_columns_counts() {
+    let mut scene = by_name("slide", None, 1).unwrap();
+    let with_friction = |scene: &mut Scene, mu: f64| scene.bodies.iter_mut().for_each(|b| b.friction = mu);
+    let end = |scene: &Scene, written: Option<f32>| {
+        let mut world = World::<f32s::X8>::from_scene(scene, Settings::default()).unwrap();
+        for step in 0..scene.steps {
+            if let Some(mu) = written.filter(|_| step == 1) {
+                let bodies = world.bodies_mut();
+                (bodies.friction[1], bodies.friction[2]) = (mu, mu);
+            }
+            world.step(scene.dt_secs).unwrap();
+        }
+        world.states()[1].position[0]
+    };
+    with_friction(&mut scene, 0.0);
+    let [ice, written] = [end(&scene, None), end(&scene, Some(0.5))];
+    with_friction(&mut scene, 0.5);
+    let rough = end(&scene, None);
+    assert!((ice - rough).abs() > 1.0, "{ice} {rough}");
+    assert!((written - rough).abs() < 0.1 * (ice - rough).abs(), "{ice} {written} {rough}");
+}
