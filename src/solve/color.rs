@@ -42,6 +42,12 @@ pub struct Coloring {
 impl Coloring {
     /// Gives each touching pair a colour and sorts them.
     pub fn run<R: Real>(&mut self, bodies: &Bodies<R>, manifolds: &mut Manifolds<R>) {
+        if manifolds.is_empty() {
+            self.order.clear();
+            self.colors.clear();
+            self.overflow = 0..0;
+            return;
+        }
         self.used.clear();
         self.used.resize(bodies.len(), 0);
         let bits = |at: usize, manifolds: &Manifolds<R>| {

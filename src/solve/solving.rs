@@ -289,7 +289,7 @@ impl<L: Lanes> Solving<L> {
 
     /// Joints, then contacts of one substep, before bodies move.
     pub fn solve(&mut self, context: &SolverContext<'_, L::Elem>, motion: &mut Motion<L::Elem>, first: bool) {
-        solver_of(context.solver).solve(&mut self.substep(context, motion, first));
+        solver_of(context.solver).solve(&mut self.substep(context, motion, first).0);
         if first {
             self.stream.age();
         }
@@ -303,20 +303,20 @@ impl<L: Lanes> Solving<L> {
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        let (mut avbd, mut graph_outdated) = (std::mem::take(&mut self.avbd), self.graph_outdated);
-        let pairs = Pairs { bodies, manifolds, avbd: &mut avbd, graph_outdated: &mut graph_outdated };
-        solver_of(context.solver).relax(&mut self.substep(context, motion, false), pairs);
-        (self.avbd, self.graph_outdated) = (avbd, graph_outdated);
+        let (mut substep, avbd, graph_outdated) = self.substep(context, motion, false);
+        let pairs = Pairs { bodies, manifolds, avbd, graph_outdated };
+        solver_of(context.solver).relax(&mut substep, pairs);
     }
 
+    /// A substep, and what beside it only `avbd` uses.
     fn substep<'a>(
         &'a mut self,
         context: &'a SolverContext<'a, L::Elem>,
         motion: &'a mut Motion<L::Elem>,
         first: bool,
-    ) -> Substep<'a, L> {
+    ) -> (Substep<'a, L>, &'a mut avbd::Avbd<L>, &'a mut bool) {
         let with_joints = self.with_joints();
-        Substep {
+        let substep = Substep {
             context,
             stream: &mut self.stream,
             joints: with_joints.then_some(&mut self.joints),
@@ -327,7 +327,8 @@ impl<L: Lanes> Solving<L> {
             deep: self.deep.steps > 0,
             softened: context.dt_secs / self.remembered_secs.max(context.dt_secs),
             joint_scale: self.joint_scale,
-        }
+        };
+        (substep, &mut self.avbd, &mut self.graph_outdated)
     }
 
     /// The manifolds with today's gaps and impulses.
