@@ -1,5 +1,7 @@
 //! What a world says of itself is what it does: lanes, precision, step; and what is written into its columns counts.
 
+#![expect(clippy::unwrap_used, reason = "functions generic over lanes are tests too")]
+
 use lamina2d::lanes::{Lanes, f32s, f64s};
 use lamina2d::scene::{Scene, by_name};
 use lamina2d::settings::{Precision, Settings};
