@@ -29,6 +29,10 @@
 //! | askama, with its parser and derive | 10 | the page | kept: templates are checked when built |
 //! | toml | 7 | scene files, blessed counts | kept |
 //! | comfy-table | 4 | tables in the terminal | without crossterm, of which nothing was used |
+//!
+//! The engine itself: 5.34 MB of code at commit 61f47dc, 4.7 now; `integrate` is 17 % of it, `narrow` 16 %. Lost: one codegen
+//! unit (328 s of LLVM's passes on one core; sixteen take as long together, on two), `lto = "off"` (16 % more
+//! instructions of a settled step). LLVM's passes are flat: inlining 10 %, combining 9 %, selection 7 %, registers 6 %.
 
 pub mod accuracy;
 pub mod cases;
