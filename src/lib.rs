@@ -58,7 +58,7 @@
 //! # Invariants
 //! 1. Lane width, thread count, debug or release never change a bit of a result. Kernels use + − × ÷ √,
 //!    comparisons and select; no fused or approximate operation, no sum across lanes. Golden hashes
-//!    (`src/tests/engine/golden.rs`) hold every width and build to it.
+//!    (`src/tests/golden.rs`) hold every width and build to it.
 //! 2. Columns are whole lanes; padding is inert (no mass, out of reach). There are no tail loops.
 //! 3. A colour of contacts, or of joints, holds no dynamic body twice. Order comes from body and pair ids, never from memory or time.
 //! 4. Enums are matched once per stage, bucket or block, never per lane value. Width 1 is the scalar version.

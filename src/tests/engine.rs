@@ -21,7 +21,6 @@ mod engine {
     mod continuous;
     mod fields;
     mod fuzz;
-    mod golden;
     mod interface;
     mod joints;
     mod motion_laws;

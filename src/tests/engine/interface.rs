@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "functions generic over lanes are tests too")]
 
 use lamina2d::lanes::{Lanes, f32s, f64s};
+use lamina2d::measure::Stage;
 use lamina2d::scene::{Scene, by_name};
 use lamina2d::settings::{Precision, Settings};
 use lamina2d::simulation::{Simulation, simulate};
@@ -71,4 +72,24 @@ fn friction_written_into_columns_counts() {
     let rough = end(&scene, None);
     assert!((ice - rough).abs() > 1.0, "{ice} {rough}");
     assert!((written - rough).abs() < 0.1 * (ice - rough).abs(), "{ice} {written} {rough}");
+}
+
+/// Of a small world every sixteenth step is timed, of others and where someone asks for it every one.
+#[test]
+fn small_worlds_are_timed_now_and_then() {
+    let timed = |name: &str, always: bool| {
+        let scene = by_name(name, None, 1).unwrap();
+        let mut world = simulate(&scene, Settings::default()).unwrap();
+        if always {
+            world.time_every_step();
+        }
+        (0..33).for_each(|_| world.advance().unwrap());
+        let first = world.times().steps;
+        world.reset_times();
+        world.advance().unwrap();
+        (first, world.times().steps, world.times().mean_ns(Stage::Solve) > 0.0)
+    };
+    assert_eq!(timed("stack/3", false), (3, 1, true));
+    assert_eq!(timed("stack/3", true), (33, 1, true));
+    assert_eq!(timed("columns/80", false), (33, 1, true));
 }

@@ -4,7 +4,7 @@
 //! Fast bodies are not stopped here: the table holds what contacts and integrators make of a scene. That they
 //! stop alike everywhere has a test of its own.
 //!
-//! A change that is meant to move bits is blessed with `LAMINA_BLESS=1 cargo test --test engine golden`, which
+//! A change that is meant to move bits is blessed with `LAMINA_BLESS=1 cargo test --test golden`, which
 //! rewrites golden.toml; its diff belongs into the commit that moved them.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -135,7 +135,7 @@ fn final_hash(case: &Case, settings: Settings) -> String {
 }
 
 fn table_path() -> PathBuf {
-    [env!("CARGO_MANIFEST_DIR"), "src", "tests", "engine", "golden.toml"].iter().collect()
+    [env!("CARGO_MANIFEST_DIR"), "src", "tests", "golden.toml"].iter().collect()
 }
 
 fn read_table() -> Table {
@@ -158,7 +158,7 @@ fn bless() -> ! {
         }
     }
     std::fs::write(table_path(), text).unwrap();
-    panic!("rewrote src/tests/engine/golden.toml: look at its diff, then run again without LAMINA_BLESS");
+    panic!("rewrote src/tests/golden.toml: look at its diff, then run again without LAMINA_BLESS");
 }
 
 #[test]
