@@ -28,6 +28,7 @@ use crate::column::Column;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
+use crate::motion::lanes_in;
 use crate::partition::Sets;
 
 /// All bodies of an island must have been quiet for so long before it falls asleep.
@@ -297,8 +298,8 @@ impl<R: Real> Islands<R> {
         let columns = [&bodies.vx, &bodies.vy, &bodies.w, &bodies.radius, &bodies.inv_mass];
         let columns = columns.each(Column::lanes::<L>);
         let times = self.quiet_secs.lanes_mut::<L>();
-        let mut tired = QuietTime::default();
-        for at in runs.iter().flat_map(|run| run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)) {
+        let mut quiet_time = QuietTime::default();
+        for at in lanes_in::<L>(runs) {
             let [vx, vy, w, radius, inv_mass] = columns.each(|column| column[at]);
             let speed = (vx.abs() + vy.abs()) + radius * w.abs();
             let quiet = speed.lt((per_sec * radius).min(fall));
@@ -307,12 +308,12 @@ impl<R: Real> Islands<R> {
             times[at] = after;
             let ripe = window.le(after) & zero.lt(inv_mass);
             if ripe.any() {
-                tired.some = true;
-                tired.newly |= (ripe & before.lt(window)).any();
+                quiet_time.some = true;
+                quiet_time.newly |= (ripe & before.lt(window)).any();
             }
         }
         self.fresh = false;
-        tired
+        quiet_time
     }
 
     /// Lets the islands in `runs` fall asleep that may. `fields`: does any act?

@@ -184,7 +184,7 @@ impl<L: Lanes> World<L> {
         let begun_secs = self.time_secs;
         self.time_secs += dt_secs;
         if self.settings.sleep && self.rests() {
-            self.stopwatch.rest(self.bodies.live());
+            self.stopwatch.count(self.bodies.live());
             return Ok(());
         }
         self.stopwatch.begin(self.bodies.live());
@@ -239,7 +239,6 @@ impl<L: Lanes> World<L> {
             self.update_sleep(dt_secs, seen.changed);
         }
         self.stopwatch.lap(Stage::Measure);
-        self.stopwatch.end();
         Ok(())
     }
 

@@ -8,6 +8,7 @@ use crate::body::Bodies;
 use crate::column::Column;
 use crate::force::Forces;
 use crate::lanes::{LaneMask, Lanes, Real};
+use crate::motion::lanes_of;
 
 /// xxh3 (64 bits) over x, y, c, s, vx, vy, w of every living body in slot order, as `f64` bits.
 pub fn state_hash<R: Real>(bodies: &Bodies<R>) -> u64 {
@@ -46,7 +47,7 @@ pub fn first_non_finite<L: Lanes>(
     let columns = state_columns(bodies);
     let mut doubtful = L::zero();
     for run in runs {
-        let chunks = run.start / L::WIDTH..run.end.div_ceil(L::WIDTH);
+        let chunks = lanes_of::<L>(run);
         for (_, column) in columns {
             for value in &column.lanes::<L>()[chunks.clone()] {
                 // 0 where the value is finite, NaN where it is not, and NaN stays.

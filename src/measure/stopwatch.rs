@@ -45,17 +45,14 @@ pub(crate) struct Stopwatch {
 impl Stopwatch {
     /// A step of so many bodies begins.
     pub(crate) fn begin(&mut self, bodies: usize) {
-        self.begun = self.takes_turn(bodies).then(Instant::now);
+        self.begun = self.count(bodies).then(Instant::now);
     }
 
-    /// A step in which nothing is to be done.
-    pub(crate) fn rest(&mut self, bodies: usize) {
-        self.times.steps += u64::from(self.takes_turn(bodies));
-    }
-
-    fn takes_turn(&mut self, bodies: usize) -> bool {
+    /// Counts a step, in which nothing may have to be done; says whether it is timed.
+    pub(crate) fn count(&mut self, bodies: usize) -> bool {
         let timed = self.every_step || bodies >= SMALL || self.until == 0;
         self.until = if timed { EVERY - 1 } else { self.until - 1 };
+        self.times.steps += u64::from(timed);
         timed
     }
 
@@ -67,11 +64,6 @@ impl Stopwatch {
             self.times.total[stage as usize] += now - *begun;
             *begun = now;
         }
-    }
-
-    /// The step ends.
-    pub(crate) fn end(&mut self) {
-        self.times.steps += u64::from(self.begun.take().is_some());
     }
 
     /// From now on every step is timed.

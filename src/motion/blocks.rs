@@ -25,16 +25,22 @@ pub(crate) fn vectors<L: Lanes>(x: &[L; BLOCK], y: &[L; BLOCK]) -> Block<L> {
     crate::each::indexed(|i| Vec2::new(x[i], y[i]))
 }
 
+/// The lane values in use of a run of slots.
+#[inline(always)]
+pub(crate) fn lanes_of<L: Lanes>(run: &Range<usize>) -> Range<usize> {
+    run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)
+}
+
 /// First lane value of each block in a run of slots.
 pub(crate) fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
-    (run.start / L::WIDTH..run.end.div_ceil(L::WIDTH)).step_by(BLOCK)
+    lanes_of::<L>(&run).step_by(BLOCK)
 }
 
 /// First lane value of each block in some runs of slots, and the end of the lane values in use. What lies behind those is
 /// padding, which a world of one body would have more of than of anything else.
 pub(crate) fn blocks_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = (usize, usize)> {
     let of = |run: Range<usize>| {
-        let end = run.end.div_ceil(L::WIDTH);
+        let end = lanes_of::<L>(&run).end;
         block_starts::<L>(run).map(move |start| (start, end.min(start + BLOCK)))
     };
     runs.iter().cloned().flat_map(of)
@@ -42,7 +48,7 @@ pub(crate) fn blocks_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item =
 
 /// The lane values in use of some runs of slots.
 pub(crate) fn lanes_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = usize> {
-    runs.iter().flat_map(|run| run.start / L::WIDTH..run.end.div_ceil(L::WIDTH))
+    runs.iter().flat_map(lanes_of::<L>)
 }
 
 #[inline(always)]

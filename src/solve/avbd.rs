@@ -113,9 +113,9 @@ impl<L: Lanes> Default for Avbd<L> {
     }
 }
 
-/// A substep in lanes.
+/// What a substep of one length multiplies by, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace<L> {
+pub(super) struct SubstepCoefficients<L> {
     /// 1/h², 1/s².
     pub(super) per_h2: L,
     /// λ per impulse: 1/h.
@@ -132,7 +132,7 @@ pub(super) struct Pace<L> {
     pub(super) per_length: L,
 }
 
-impl<L: Lanes> Pace<L> {
+impl<L: Lanes> SubstepCoefficients<L> {
     /// Of substeps of `h_secs`; `share` is what an impulse changes the displacement by over h times the velocity.
     pub(super) fn new(h_secs: f64, share: f64, length_m: f64) -> Self {
         Self {
@@ -162,7 +162,7 @@ struct Seen<L> {
 
 impl<L: Lanes> Seen<L> {
     #[inline(always)]
-    fn gather(manifolds: &Manifolds<L::Elem>, places: &[u32], substep_group: &Pace<L>) -> Self {
+    fn gather(manifolds: &Manifolds<L::Elem>, places: &[u32], coefficients: &SubstepCoefficients<L>) -> Self {
         let [nx, ny, ax0, ay0, ax1, ay1, dx, dy] = L::gather_rows(manifolds.geometry(), places);
         let [s0, s1, friction, _] = L::gather_fours(manifolds.gaps(), places);
         let [j0, j1, jt, k] = L::gather_fours(manifolds.impulses(), places);
@@ -182,7 +182,7 @@ impl<L: Lanes> Seen<L> {
             levers: [levers(arms[0], normal), levers(arms[1], normal), levers(middle, tangent)],
             gaps: [s0, s1],
             friction,
-            dual: [j0 * substep_group.force, j1 * substep_group.force, jt * substep_group.force, k],
+            dual: [j0 * coefficients.force, j1 * coefficients.force, jt * coefficients.force, k],
             exists,
         }
     }
@@ -246,18 +246,18 @@ impl<L: Lanes> Avbd<L> {
         &mut self,
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
-        substep_group: &Pace<L>,
+        coefficients: &SubstepCoefficients<L>,
     ) {
-        self.warm(manifolds, motion, substep_group);
+        self.warm(manifolds, motion, coefficients);
         let keep = L::lit(KEEP);
         for _ in 0..ITERATIONS {
-            self.descend(manifolds, motion, substep_group, keep);
-            self.raise(manifolds, motion, substep_group, keep);
+            self.descend(manifolds, motion, coefficients, keep);
+            self.raise(manifolds, motion, coefficients, keep);
         }
-        self.find_velocities(motion, substep_group);
-        self.descend(manifolds, motion, substep_group, L::zero());
+        self.find_velocities(motion, coefficients);
+        self.descend(manifolds, motion, coefficients, L::zero());
         self.release(motion);
-        self.follow(manifolds, motion, substep_group);
+        self.follow(manifolds, motion, coefficients);
     }
 
     /// Fades λ and k, and sets bodies on their way without acceleration: resting ones begin where they end.
@@ -265,7 +265,7 @@ impl<L: Lanes> Avbd<L> {
         &mut self,
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
-        substep_group: &Pace<L>,
+        coefficients: &SubstepCoefficients<L>,
     ) {
         for slots in self.slots.chunks(L::WIDTH) {
             let ahead = L::gather_fours(motion.moved.fours(), slots);
@@ -274,9 +274,9 @@ impl<L: Lanes> Avbd<L> {
             let mut target = ahead;
             let mut guess = ahead;
             for k in 0..3 {
-                let by_velocity = velocity[k] * substep_group.h;
+                let by_velocity = velocity[k] * coefficients.h;
                 target[k] = by_velocity;
-                guess[k] = ahead[k] + (substep_group.guess - L::one()) * (ahead[k] - by_velocity);
+                guess[k] = ahead[k] + (coefficients.guess - L::one()) * (ahead[k] - by_velocity);
             }
             L::scatter_fours(target, self.target.fours_mut(), slots);
             L::scatter_fours(guess, motion.moved.fours_mut(), slots);
@@ -284,7 +284,7 @@ impl<L: Lanes> Avbd<L> {
         let [places, a, b] = &self.pairs;
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
-            let least = L::lit(START) * stiffness(manifolds, motion, place, [a, b], substep_group);
+            let least = L::lit(START) * stiffness(manifolds, motion, place, [a, b], coefficients);
             let [j0, j1, jt, k] = L::gather_fours(manifolds.impulses(), place);
             let fade = L::lit(KEEP * FADE);
             let k = least.max(k * L::lit(FADE));
@@ -297,7 +297,7 @@ impl<L: Lanes> Avbd<L> {
         &self,
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
-        substep_group: &Pace<L>,
+        coefficients: &SubstepCoefficients<L>,
         keep: L,
     ) {
         for (batch, slots) in self.batches.iter().zip(self.slots.chunks(L::WIDTH)) {
@@ -305,7 +305,7 @@ impl<L: Lanes> Avbd<L> {
             let x = L::gather_fours(motion.moved.fours(), slots);
             let y = L::gather_fours(self.target.fours(), slots);
             let (mass, inertia) =
-                (substep_group.per_h2 * inverse(inv_mass), substep_group.per_h2 * inverse(inv_inertia));
+                (coefficients.per_h2 * inverse(inv_mass), coefficients.per_h2 * inverse(inv_inertia));
             // Lower triangle of H: xx, xy, yy, xθ, yθ, θθ.
             let mut h = [mass, L::zero(), mass, L::zero(), L::zero(), inertia];
             let mut pushed = L::zero();
@@ -313,7 +313,7 @@ impl<L: Lanes> Avbd<L> {
             let mut f = [mass * (y[0] - x[0]), mass * (y[1] - x[1]), inertia * (y[2] - x[2])];
             for visit in batch.start..batch.end {
                 let lanes = visit * L::WIDTH..(visit + 1) * L::WIDTH;
-                let seen = Seen::<L>::gather(manifolds, &self.place[lanes.clone()], substep_group);
+                let seen = Seen::<L>::gather(manifolds, &self.place[lanes.clone()], coefficients);
                 let theirs = L::gather_fours(motion.moved.fours(), &self.other[lanes]);
                 let side = self.side[visit];
                 let is_b = L::zero().lt(side);
@@ -357,33 +357,33 @@ impl<L: Lanes> Avbd<L> {
         &self,
         manifolds: &mut Manifolds<L::Elem>,
         motion: &Motion<L::Elem>,
-        substep_group: &Pace<L>,
+        coefficients: &SubstepCoefficients<L>,
         keep: L,
     ) {
         let [places, a, b] = &self.pairs;
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
-            let seen = Seen::<L>::gather(manifolds, place, substep_group);
+            let seen = Seen::<L>::gather(manifolds, place, coefficients);
             let moved = [a, b].each(|slots| L::gather_fours(motion.moved.fours(), slots));
             let c = seen.violation(&moved[0], &moved[1], keep);
             let (force, counts) = seen.forces(&c);
-            let unit = stiffness(manifolds, motion, place, [a, b], substep_group);
+            let unit = stiffness(manifolds, motion, place, [a, b], coefficients);
             let miss = (c[0].abs() * counts[0]).max(c[1].abs() * counts[1]).max(c[2].abs() * counts[2]);
-            let k = seen.dual[3] + L::lit(GROWTH) * unit * (miss * substep_group.per_length);
+            let k = seen.dual[3] + L::lit(GROWTH) * unit * (miss * coefficients.per_length);
             let k = k.min(L::lit(MOST) * unit);
-            let [j0, j1, jt] = force.each(|force| force * substep_group.impulse);
+            let [j0, j1, jt] = force.each(|force| force * coefficients.impulse);
             L::scatter_fours([j0, j1, jt, k], manifolds.impulses_mut(), place);
         }
     }
 
     /// Velocities of bodies that touch, by what contacts moved them by.
-    fn find_velocities(&self, motion: &mut Motion<L::Elem>, substep_group: &Pace<L>) {
+    fn find_velocities(&self, motion: &mut Motion<L::Elem>, coefficients: &SubstepCoefficients<L>) {
         for slots in self.slots.chunks(L::WIDTH) {
             let (x, y) =
                 (L::gather_fours(motion.moved.fours(), slots), L::gather_fours(self.target.fours(), slots));
             let mut velocity = L::gather_fours(motion.velocity.fours(), slots);
             for k in 0..3 {
-                let change = (x[k] - y[k]) * substep_group.velocity;
+                let change = (x[k] - y[k]) * coefficients.velocity;
                 velocity[k] = velocity[k] + L::select(L::zero().lt(x[3]), change, L::zero());
             }
             L::scatter_fours(velocity, motion.velocity.fours_mut(), slots);
@@ -402,11 +402,16 @@ impl<L: Lanes> Avbd<L> {
     }
 
     /// Brings the gaps up to date.
-    fn follow(&self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>, substep_group: &Pace<L>) {
+    fn follow(
+        &self,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+        coefficients: &SubstepCoefficients<L>,
+    ) {
         let [places, a, b] = &self.pairs;
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
-            let seen = Seen::<L>::gather(manifolds, place, substep_group);
+            let seen = Seen::<L>::gather(manifolds, place, coefficients);
             let moved = [a, b].each(|slots| L::gather_fours(motion.moved.fours(), slots));
             let change = seen.change(&moved[0], &moved[1]);
             let [s0, s1, friction, restitution] = L::gather_fours(manifolds.gaps(), place);
@@ -423,13 +428,13 @@ fn stiffness<L: Lanes>(
     motion: &Motion<L::Elem>,
     places: &[u32],
     ends: [&[u32]; 2],
-    substep_group: &Pace<L>,
+    coefficients: &SubstepCoefficients<L>,
 ) -> L {
     let row: [L; ROW] = L::gather_rows(manifolds.geometry(), places);
     let [ma, mb] = ends.each(|slots| L::gather_fours(motion.inverse_masses.fours(), slots));
     let (normal, arm) = (Vec2::new(row[0], row[1]), Vec2::new(row[2], row[3]));
     let (la, lb) = (arm.cross(normal), (arm - Vec2::new(row[6], row[7])).cross(normal));
-    substep_group.per_h2 * inverse((ma[0] + mb[0]) + (ma[1] * (la * la) + mb[1] * (lb * lb)))
+    coefficients.per_h2 * inverse((ma[0] + mb[0]) + (ma[1] * (la * la) + mb[1] * (lb * lb)))
 }
 
 /// Δx of H·Δx = f by LDLᵀ; 0 for padding, whose H is 0.
@@ -465,7 +470,11 @@ impl<L: Lanes> ContactSolver<L> for Blocks {
             avbd.cut(bodies, manifolds);
         }
         let (h_secs, share) = (substep.h_secs(), substep.share());
-        avbd.settle(manifolds, substep.motion, &Pace::new(h_secs, share, substep.context.needs.length));
+        avbd.settle(
+            manifolds,
+            substep.motion,
+            &SubstepCoefficients::new(h_secs, share, substep.context.needs.length),
+        );
         if let Some(joints) = &mut substep.joints {
             let (rows, moved) = (substep.motion.velocity.fours_mut(), substep.motion.moved.fours());
             joints.relax(rows, moved, &Stiffness::soft(h_secs, share));

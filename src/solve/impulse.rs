@@ -46,7 +46,7 @@ struct Resolve<'a, L: Lanes> {
     moved: Option<&'a [[L::Elem; 4]]>,
     /// Slower approaches do not bounce, m/s.
     threshold: L,
-    /// Does anything rub?
+    /// Has any body friction?
     friction: bool,
     /// Does anything bounce?
     restitution: bool,

@@ -8,7 +8,7 @@ use crate::joint::{JointError, JointId, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, StageTimes, state_hash};
 use crate::scene::{BodyKind, BodySpec, SceneError};
-use crate::settings::Settings;
+use crate::settings::{Precision, Settings};
 use crate::solve::Solving;
 
 impl<L: Lanes> World<L> {
@@ -59,7 +59,7 @@ impl<L: Lanes> World<L> {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
         settings.check()?;
         let have = <L::Elem as Real>::NAME;
-        if settings.precision.name() != have {
+        if settings.precision != Precision::of::<L::Elem>() {
             return Err(WorldError::Precision { have, asked: settings.precision });
         }
         if settings.lanes != L::WIDTH {

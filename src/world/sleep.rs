@@ -78,8 +78,9 @@ impl<L: Lanes> World<L> {
     /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
     pub(super) fn update_sleep(&mut self, dt_secs: f64, changed: bool) {
         let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
-        let tired = self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.needs.gravity);
-        if tired.newly || (tired.some && changed) {
+        let quiet_time =
+            self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.needs.gravity);
+        if quiet_time.newly || (quiet_time.some && changed) {
             self.islands.settle(&mut self.bodies, manifolds, runs, !self.fields.is_empty());
         }
         self.counts.sleeping = self.islands.sleeping();
