@@ -1,10 +1,13 @@
 //! What narrow phase and solver share: the manifolds of all candidate pairs, kept from step to step.
 //!
-//! Each candidate pair has a place in one list, ordered by bucket and slots, and keeps its manifold, its
-//! impulses and its colour there until the pair leaves the list. A pair that does not touch has a manifold
-//! of no points. When the list of pairs changes, one walk along both lists takes over what persists.
+//! Each candidate pair has a place in one list, ordered by bucket and slots, and keeps its manifold there until the
+//! pair leaves the list. A pair that does not touch has a manifold of no points. When the list of pairs changes, one walk
+//! along both lists takes over what persists.
 //!
-//! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, colour 1. One-point and two-point
+//! Gaps and impulses of a contact that is solved are in the lane of the constraint that [`Home`] names, and nowhere else;
+//! those of a contact without one (it sleeps, or has just begun, or its solver works on pairs) are in its own rows.
+//!
+//! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, home 8. One-point and two-point
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
 mod rest;
@@ -51,8 +54,51 @@ pub mod impulse {
     pub const STIFFNESS: usize = 3;
 }
 
-/// No colour yet.
-pub const UNCOLORED: u8 = u8::MAX;
+/// Which lane of which list of constraints holds a contact's gaps and impulses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Home {
+    /// The list, by number.
+    pub list: u16,
+    /// Is it solved as a contact of two points?
+    pub two: bool,
+    /// Which of the list's lanes.
+    pub lane: u32,
+}
+
+impl Home {
+    /// In no list: the pair's rows hold what there is.
+    pub const NONE: Self = Self { list: u16::MAX, two: false, lane: 0 };
+
+    /// Is there a lane?
+    #[inline(always)]
+    pub fn is_some(self) -> bool {
+        self.list != u16::MAX
+    }
+}
+
+/// A manifold that has other points than before, or other features.
+#[derive(Clone, Copy, Debug)]
+pub struct Changed {
+    /// The pair.
+    pub place: u32,
+    /// Points and features it had.
+    pub before: Code,
+    /// Those it has.
+    pub now: Code,
+}
+
+/// Where the impulse of each point comes from, of those before; see [`Changed::sources`].
+pub type Sources = [Option<usize>; 2];
+
+impl Changed {
+    /// Which points of the manifold before have the features of today's.
+    pub fn sources(&self) -> Sources {
+        let had = |k: usize| {
+            (0..self.before.points()).rev().find(|&j| self.before.feature(j) == self.now.feature(k))
+        };
+        crate::each::indexed(|k| (k < self.now.points()).then(|| had(k)).flatten())
+    }
+}
 
 /// Points and features of a manifold in one number that lanes can hold: f₀ + 2⁸·f₁ + 2¹⁶·points, exact in f32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +144,10 @@ pub struct Manifolds<R: Real> {
     touching: Vec<u32>,
     /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
     changed: bool,
+    /// Manifolds with other codes than when these were last taken.
+    recoded: Vec<Changed>,
+    /// Homes of pairs that left the list.
+    gone: Vec<Home>,
 }
 
 impl<R: Real> Default for Manifolds<R> {
@@ -109,6 +159,8 @@ impl<R: Real> Default for Manifolds<R> {
             bucket_of: Vec::new(),
             touching: Vec::new(),
             changed: false,
+            recoded: Vec::new(),
+            gone: Vec::new(),
         }
     }
 }
@@ -145,18 +197,35 @@ impl<R: Real> Manifolds<R> {
     }
 
     fn take_over(&mut self) {
-        let (now, before) = (&mut self.now, &self.before);
+        let Self { now, before, gone, .. } = self;
+        let mut leave = |old_at: usize| gone.extend(Some(before.home[old_at]).filter(|home| home.is_some()));
         for number in 0..6 {
             let mut old = before.bucket(number).peekable();
             for at in now.bucket(number) {
                 let order = now.order(at);
-                while old.next_if(|&old_at| before.order(old_at) < order).is_some() {}
+                while let Some(old_at) = old.next_if(|&old_at| before.order(old_at) < order) {
+                    leave(old_at);
+                }
                 match old.next_if(|&old_at| before.order(old_at) == order) {
                     Some(old_at) => now.take_place(at, before, old_at),
                     None => now.clear_place(at, R::from_f64(Code::UNKNOWN)),
                 }
             }
+            old.for_each(&mut leave);
         }
+    }
+
+    /// Homes of the pairs that have left the list since they were last taken, the last lanes first.
+    pub fn take_gone(&mut self, into: &mut Vec<Home>) {
+        into.clear();
+        into.append(&mut self.gone);
+        into.sort_unstable_by(|a, b| b.cmp(a));
+    }
+
+    /// Manifolds with other points or features than when these were last taken.
+    pub fn take_recoded(&mut self, into: &mut Vec<Changed>) {
+        into.clear();
+        into.append(&mut self.recoded);
     }
 
     /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
@@ -165,6 +234,8 @@ impl<R: Real> Manifolds<R> {
         self.now.close();
         self.rest.forget();
         self.touching.clear();
+        self.recoded.clear();
+        self.gone.clear();
         self.changed = true;
     }
 
@@ -220,13 +291,13 @@ impl<R: Real> Manifolds<R> {
     pub fn impulses_mut(&mut self) -> &mut [[R; 4]] {
         self.now.impulse.fours_mut()
     }
-    /// Colour per place; see [`crate::solve::color`].
-    pub fn colors_mut(&mut self) -> &mut [u8] {
-        &mut self.now.color
+    /// Where the gaps and impulses of each place are.
+    pub fn homes(&self) -> &[Home] {
+        &self.now.home
     }
-    /// Colour of a place.
-    pub fn color(&self, at: usize) -> u8 {
-        self.now.color[at]
+    /// The same, to change.
+    pub fn homes_mut(&mut self) -> &mut [Home] {
+        &mut self.now.home
     }
 
     /// Writes what the narrow phase found for `WIDTH` pairs: rows given as lanes, codes ≥ 0.
@@ -287,7 +358,7 @@ impl<R: Real> Manifolds<R> {
             code.store(codes);
             let (old, fresh) = (old.to_array(), code.to_array());
             for lane in set_lanes(changed) {
-                self.rematch(first + lane, Code::of(old[lane]), Code::of(fresh[lane]));
+                self.recode(first + lane, Code::of(old[lane]), Code::of(fresh[lane]));
             }
         }
     }
@@ -305,29 +376,31 @@ impl<R: Real> Manifolds<R> {
         let old = std::mem::replace(&mut self.now.code[place], fresh);
         // How often padding lanes write to the spill place depends on the width: nothing may follow from it.
         if old != fresh && place < self.pairs() {
-            self.rematch(place, Code::of(old), Code::of(fresh));
+            self.recode(place, Code::of(old), Code::of(fresh));
         }
     }
 
-    /// A manifold has other points than before: impulses stay with their features, new points begin at 0.
+    /// A manifold has other points or features than before.
     #[inline(never)]
-    fn rematch(&mut self, place: usize, old: Code, fresh: Code) {
-        let before = self.now.impulse.fours()[place];
-        let mut row = [R::ZERO; 4];
-        for k in 0..fresh.points() {
-            for j in 0..old.points() {
-                if old.feature(j) == fresh.feature(k) {
-                    row[impulse::NORMAL + k] = before[impulse::NORMAL + j];
-                    row[impulse::TANGENT] = before[impulse::TANGENT];
-                    row[impulse::STIFFNESS] = before[impulse::STIFFNESS];
-                }
+    fn recode(&mut self, place: usize, before: Code, now: Code) {
+        self.changed |= before.points() != now.points();
+        if before != now {
+            self.recoded.push(Changed { place: place as u32, before, now });
+        }
+    }
+
+    /// Impulses of a pair's row stay with their features, new points begin at 0.
+    pub fn rematch(&mut self, changed: &Changed) {
+        let row = &mut self.now.impulse.fours_mut()[changed.place as usize];
+        let before = *row;
+        *row = [R::ZERO; 4];
+        for (k, source) in changed.sources().into_iter().enumerate() {
+            if let Some(j) = source {
+                row[impulse::NORMAL + k] = before[impulse::NORMAL + j];
+                row[impulse::TANGENT] = before[impulse::TANGENT];
+                row[impulse::STIFFNESS] = before[impulse::STIFFNESS];
             }
         }
-        self.now.impulse.fours_mut()[place] = row;
-        if fresh.points() == 0 {
-            self.now.color[place] = UNCOLORED;
-        }
-        self.changed |= old.points() != fresh.points();
     }
 
     /// Brings the list of touching pairs up to date. Says whether it, or a number of points, changed.

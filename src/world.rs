@@ -191,7 +191,6 @@ impl<L: Lanes> World<L> {
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
         let needs = self.needs.needed(skips);
 
-        let seen = self.find_contacts(needs, rounded);
         let mut fields = std::mem::take(&mut self.fields);
         for field in &mut fields {
             field.begin(begun_secs);
@@ -206,6 +205,11 @@ impl<L: Lanes> World<L> {
             moving: solve::pushes(solver),
             carries: solve::carries_impulses(solver),
         };
+        let stiffness = self.settings.contact_stiffness();
+        let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
+        let goal = Goal::of(&context, &self.settings, &self.forces);
+        let goal = goal.map(|goal| (goal, self.solving.look(&goal, &self.bodies, &self.joints)));
+        let seen = self.find_contacts(needs, rounded);
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
         let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
@@ -214,9 +218,7 @@ impl<L: Lanes> World<L> {
             let fast = self.continuous.begin(self.settings.continuous);
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
         } else {
-            let stiffness = self.settings.contact_stiffness();
-            let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
-            let moved = self.move_in_contact(&context, &seen);
+            let moved = self.move_in_contact(&context, goal, &seen);
             let fast = self.continuous.begin(self.settings.continuous);
             integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, context.speeds());
             moved
@@ -262,25 +264,21 @@ impl<L: Lanes> World<L> {
         let still = reuse && !self.motion.any_has_moved && !self.regrouped;
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
-            if self.regrouped {
-                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
-                self.regroup();
-            }
+            self.regroup();
             if std::mem::take(&mut self.pairs_outdated) {
-                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.narrow.rebuild(&self.bodies, self.broad.pairs());
+                self.solving.rename(&mut self.narrow.manifolds, &self.motion);
             }
             let has_moved = if reuse { MovedBodies::These(&self.motion.has_moved) } else { MovedBodies::All };
             seen.looked_at = self.narrow.choose(self.bodies.len(), has_moved);
-            self.solving.hand_back_chosen(self.narrow.found(), &self.motion);
             match self.narrow.wanted() {
                 Some(slots) => self.bodies.refresh_polygons_in(slots),
                 None => self.bodies.refresh_polygons(),
             }
             self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
+            self.solving.follow(&mut self.narrow.manifolds, &self.motion);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
-                self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
                 self.wake_touched();
             }
         }
@@ -289,11 +287,15 @@ impl<L: Lanes> World<L> {
     }
 
     /// The substeps of a step with contacts; false if one broke off at a state that is not finite.
-    fn move_in_contact(&mut self, context: &SolverContext<'_, L::Elem>, seen: &Seen) -> (Skipped, bool) {
+    fn move_in_contact(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        goal: Option<(Goal, bool)>,
+        seen: &Seen,
+    ) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
-        let goal = Goal::of(context, &self.settings, &self.forces);
         let repaced = goal.is_some_and(|goal| {
-            solving.decide_substep_groups(&goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
+            solving.decide_substep_groups(goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
             solving.prepare(bodies, self.narrow.found(), seen.changed || repaced, motion);

@@ -10,7 +10,7 @@
 //! | `narrow` | [`lamina2d::internals::Narrow::run`] on the pairs of one bucket, its pose rows included | the manifolds |
 //! | `prepare` | colours, batches and constraints of all contacts | the order in colours; every contact once, no dynamic body twice in a colour |
 //! | `solve` | a solver's pass over contacts before bodies move, or (`_settle`, of `soft` the relaxation) after | the rows, displacements, impulses |
-//! | `store` | gaps and impulses handed back from constraints to pairs | gaps and impulses |
+//! | `store` | gaps and impulses of constraints written to the pairs' rows | gaps and impulses |
 //! | `proof` | an `integrate` kernel with as much, a hundredth more and twice as much to do: what `lamina gate --self-test` tells apart | state hash |
 //! | `joints` | joints placed, and `soft`'s passes over them | the rows |
 

@@ -54,11 +54,11 @@ impl Pile {
         motion
     }
 
-    /// Constraints of all contacts.
-    pub(super) fn solving<L: Lanes<Elem = f32>>(&self) -> Solving<L> {
+    /// Constraints of all contacts, and the manifolds that know where they are.
+    pub(super) fn solving<L: Lanes<Elem = f32>>(&self) -> (Solving<L>, Manifolds<f32>) {
         let (mut solving, mut narrow) = (Solving::default(), self.narrow.clone());
         solving.prepare(&self.bodies, narrow.found(), true, &self.motion());
-        solving
+        (solving, narrow.manifolds)
     }
 
     /// How bodies move: one substep under gravity.

@@ -1,5 +1,6 @@
 //! Contacts become constraints: colours, batches, masses and levers.
 
+use lamina2d::contact::Home;
 use lamina2d::internals::{Motion, Narrow, Solving};
 use lamina2d::lanes::Lanes;
 use lamina2d::scene::BodyKind;
@@ -8,7 +9,7 @@ use super::pile::Pile;
 use super::{Kernel, SIZES, Stage, answer_of, list_widths};
 use crate::common::Answer;
 
-/// All contacts of a pile, as where the graph of contacts has changed.
+/// All contacts of a pile, as if they had all come at once.
 struct Prepare {
     pile: Pile,
     motion: Motion<f32>,
@@ -26,35 +27,39 @@ impl Stage for Prepare {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, (solving, narrow): &mut Self::Memory<L>) {
+        // As if they had come just now, each time.
+        solving.forget();
+        narrow.manifolds.homes_mut().fill(Home::NONE);
         solving.prepare(&self.pile.bodies, narrow.found(), true, &self.motion);
     }
 
     fn answer<L: Lanes<Elem = f32>>(&self, (solving, _): &Self::Memory<L>) -> Answer {
-        check_colors(&self.pile, solving);
-        let order = solving.coloring().order();
-        answer_of(order.len(), order.iter().map(|&place| u64::from(place)))
+        let order = check_colors(&self.pile, solving);
+        answer_of(order.len(), order.into_iter().map(u64::from))
     }
 }
 
-/// Every contact is in one colour, and no colour holds a dynamic body twice.
-fn check_colors<L: Lanes<Elem = f32>>(pile: &Pile, solving: &Solving<L>) {
-    let (coloring, manifolds) = (solving.coloring(), &pile.narrow.manifolds);
+/// Every contact is in one colour, and no colour holds a dynamic body twice. Returns the contacts, colour by colour.
+fn check_colors<L: Lanes<Elem = f32>>(pile: &Pile, solving: &Solving<L>) -> Vec<u32> {
+    let manifolds = &pile.narrow.manifolds;
     let mut contacts_seen = vec![false; manifolds.pairs()];
-    for color in coloring.colors() {
+    let mut order = Vec::new();
+    for (overflow, places) in solving.stream().places() {
         let mut bodies_seen = vec![false; pile.bodies.len()];
-        for &place in &coloring.order()[color.two.start..color.one.end] {
+        for place in places {
             let again = std::mem::replace(&mut contacts_seen[place as usize], true);
             assert!(!again, "the contact at {place} has two colours");
+            order.push(place);
             for slot in manifolds.slots(place as usize).map(|slot| slot as usize) {
                 let again = std::mem::replace(&mut bodies_seen[slot], true);
                 let moves = pile.bodies.kind(slot) == BodyKind::Dynamic;
-                assert!(!(again && moves), "body {slot} twice in a colour");
+                assert!(!(again && moves) || overflow, "body {slot} twice in a colour");
             }
         }
     }
-    let colored = contacts_seen.iter().filter(|&&seen| seen).count();
     assert!(!manifolds.is_empty(), "nothing touches");
-    assert_eq!(colored + coloring.overflow().len(), manifolds.len(), "a contact without a colour");
+    assert_eq!(order.len(), manifolds.len(), "a contact without a colour");
+    order
 }
 
 /// Contacts of one point, and mostly of two.

@@ -1,4 +1,4 @@
-//! One solver's pass over the contacts of a pile, and what it leaves handed back to the pairs.
+//! One solver's pass over the contacts of a pile, and what it leaves read out.
 
 use lamina2d::internals;
 use lamina2d::lanes::Lanes;
@@ -15,7 +15,7 @@ enum Part {
     Solve,
     /// [`Solving::settle`]: after.
     Settle,
-    /// [`Solving::hand_back`]: when the step is over and manifolds are to be found anew.
+    /// [`Solving::write_rows`]: when the step is over and somebody asks.
     Store,
 }
 
@@ -31,11 +31,8 @@ impl Pass {
     fn begin<L: Lanes<Elem = f32>>(&self) -> State<L> {
         let (plan, bodies) = (self.pile.plan(self.solver), &self.pile.bodies);
         let context = context(self.solver, &plan);
-        let mut state = State {
-            motion: self.pile.motion(),
-            manifolds: self.pile.narrow.manifolds.clone(),
-            solving: self.pile.solving::<L>(),
-        };
+        let (solving, manifolds) = self.pile.solving::<L>();
+        let mut state = State { motion: self.pile.motion(), manifolds, solving };
         let State { motion, manifolds, solving } = &mut state;
         let warm = solving.begin(&context, bodies, manifolds, motion);
         internals::predict::<L>(&plan, bodies, motion, warm);
@@ -84,7 +81,7 @@ impl Stage for Pass {
         match self.part {
             Part::Solve => solving.solve(&context, motion, true),
             Part::Settle => solving.settle(&context, &self.pile.bodies, manifolds, motion),
-            Part::Store => solving.hand_back(manifolds, motion),
+            Part::Store => solving.write_rows(manifolds, motion),
         }
     }
 

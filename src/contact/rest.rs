@@ -1,7 +1,7 @@
 //! The contacts of what sleeps: a table of their own, which no step goes through.
 //!
 //! A pair with an end that is awake has its place in the list of pairs; what else touches rests here with its
-//! manifold, impulses and colour, and comes back when an end wakes. What is too far apart to touch is forgotten: it is
+//! manifold, gaps and impulses, and comes back when an end wakes. What is too far apart to touch is forgotten: it is
 //! still too far apart when it wakes, and pairs are found anew then.
 
 use super::{Code, Contact, Manifolds, PairTable};

@@ -45,7 +45,7 @@ impl<R: Real> PairTable<R> {
         ContactRow { slots: [self.a[at], self.b[at]], code: code.0, values }
     }
 
-    fn own_row(&self, at: usize) -> ContactRow<R> {
+    pub(super) fn own_row(&self, at: usize) -> ContactRow<R> {
         let (gaps, push) = (self.gap.fours()[at], self.impulse.fours()[at]);
         let separations = [gaps[gap::SEPARATION], gaps[gap::SEPARATION + 1]];
         let impulses = [push[impulse::NORMAL], push[impulse::NORMAL + 1]];
@@ -60,9 +60,9 @@ impl<R: Real> Manifolds<R> {
         self.now.row_with(place, gaps_and_impulses)
     }
 
-    /// The touching pairs, with the gaps and impulses they hold.
-    pub fn rows(&self) -> impl Iterator<Item = ContactRow<R>> + '_ {
-        self.touching.iter().map(|&place| self.now.own_row(place as usize))
+    /// The pair at a place with the gaps and impulses its rows hold.
+    pub fn own_row(&self, place: usize) -> ContactRow<R> {
+        self.now.own_row(place)
     }
 
     /// The touching pairs of what sleeps.

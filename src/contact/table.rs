@@ -1,6 +1,6 @@
 //! The list of candidate pairs, and what each keeps from step to step.
 
-use super::{Code, Contact, ContactPoint, UNCOLORED, gap, geometry, impulse};
+use super::{Code, Contact, ContactPoint, Home, gap, geometry, impulse};
 use crate::column::Column;
 use crate::lanes::{ROW, Real};
 
@@ -17,7 +17,7 @@ pub(super) struct PairTable<R: Real> {
     pub(super) geometry: Column<R>,
     pub(super) gap: Column<R>,
     pub(super) impulse: Column<R>,
-    pub(super) color: Vec<u8>,
+    pub(super) home: Vec<Home>,
 }
 
 impl<R: Real> Default for PairTable<R> {
@@ -31,7 +31,7 @@ impl<R: Real> Default for PairTable<R> {
             geometry: zeros(),
             gap: zeros(),
             impulse: zeros(),
-            color: Vec::new(),
+            home: Vec::new(),
         };
         table.resize(0);
         table
@@ -43,7 +43,7 @@ impl<R: Real> PairTable<R> {
         let places = pairs + 2;
         self.a.resize(places, 0);
         self.b.resize(places, 0);
-        self.color.resize(places, UNCOLORED);
+        self.home.resize(places, Home::NONE);
         self.grow_columns(places);
     }
 
@@ -63,7 +63,7 @@ impl<R: Real> PairTable<R> {
         let more = (pairs + 2).saturating_sub(self.a.len());
         self.a.reserve(more);
         self.b.reserve(more);
-        self.color.reserve(more);
+        self.home.reserve(more);
         self.grow_columns(pairs + 2);
     }
 
@@ -85,7 +85,7 @@ impl<R: Real> PairTable<R> {
         self.geometry.rows_mut()[at] = [R::ZERO; ROW];
         self.gap.fours_mut()[at] = [R::ZERO; 4];
         self.impulse.fours_mut()[at] = [R::ZERO; 4];
-        self.color[at] = UNCOLORED;
+        self.home[at] = Home::NONE;
     }
 
     pub(super) fn take_place(&mut self, at: usize, old: &Self, old_at: usize) {
@@ -93,7 +93,7 @@ impl<R: Real> PairTable<R> {
         self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];
         self.gap.fours_mut()[at] = old.gap.fours()[old_at];
         self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
-        self.color[at] = old.color[old_at];
+        self.home[at] = old.home[old_at];
     }
 
     /// The list ends here: makes room for no more than it has, and clears the places that are no pairs.
@@ -124,6 +124,6 @@ impl<R: Real> PairTable<R> {
 
     pub(super) fn bytes(&self) -> usize {
         let columns = self.code.bytes() + self.geometry.bytes() + self.gap.bytes() + self.impulse.bytes();
-        columns + self.a.capacity() * 8 + self.color.capacity()
+        columns + (self.a.capacity() + self.home.capacity()) * 8
     }
 }

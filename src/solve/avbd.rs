@@ -86,6 +86,8 @@ pub(super) struct Avbd<L: Lanes> {
     target: Column<L::Elem>,
     /// Places that touch, padded to whole lanes, and their slots.
     pairs: [Vec<u32>; 3],
+    /// The graph of contacts is not the one that batches were cut for.
+    pub(super) outdated: bool,
 }
 
 /// The visits of one batch of bodies.
@@ -109,6 +111,7 @@ impl<L: Lanes> Default for Avbd<L> {
             ahead: Column::new(L::Elem::ZERO),
             target: Column::new(L::Elem::ZERO),
             pairs: Default::default(),
+            outdated: true,
         }
     }
 }
@@ -465,8 +468,8 @@ impl<L: Lanes> ContactSolver<L> for Blocks {
     }
 
     fn relax(&self, substep: &mut Substep<'_, L>, pairs: Pairs<'_, L>) {
-        let Pairs { bodies, manifolds, avbd, graph_outdated } = pairs;
-        if std::mem::take(graph_outdated) {
+        let Pairs { bodies, manifolds, avbd } = pairs;
+        if std::mem::take(&mut avbd.outdated) {
             avbd.cut(bodies, manifolds);
         }
         let (h_secs, share) = (substep.h_secs(), substep.share());

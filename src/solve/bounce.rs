@@ -9,9 +9,9 @@
 //! What a bounce displaces must not enter others: [`MoveOut`] moves it out again, and what comes to lie there begins the next
 //! step at the gap 0.
 
+use super::batches::{Ends, Visit};
 use super::block::{answer, cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
-use super::stream::{Ends, Visit};
 use crate::lanes::{LaneMask, Lanes};
 
 /// Bounces of one point within a step that are followed one by one.
@@ -37,6 +37,24 @@ pub(crate) struct Rebound<L> {
 pub(crate) struct Bounces<L> {
     two: Vec<[Rebound<L>; 2]>,
     one: Vec<[Rebound<L>; 1]>,
+}
+
+/// Bounces of a step; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub(crate) struct Bouncing<L: Lanes> {
+    pub(super) bounces: Bounces<L>,
+    /// What bounces displace, per slot: x, y (metres), angle, –.
+    pub(super) displaced: Vec<[L::Elem; 4]>,
+    /// Bodies were fast enough to bounce as this step began: their approaches were looked at.
+    pub(super) looked: bool,
+    /// Something bounces in this step.
+    pub(super) any: bool,
+}
+
+impl<L: Lanes> Default for Bouncing<L> {
+    fn default() -> Self {
+        Self { bounces: Bounces::default(), displaced: Vec::new(), looked: false, any: false }
+    }
 }
 
 impl<L> Default for Bounces<L> {

@@ -8,10 +8,14 @@
 //! Bytes per contact in f32: two points 80 (19 values and the restitution), one point 60 (15 values), and 8 for the slots.
 //! Kept out: masses (they come with the bodies' rows), arms (levers serve), whatever only some solver wants.
 
-use super::stream::Ends;
+mod lane;
+
+use super::batches::Ends;
 use crate::each::Each as _;
-use crate::lanes::{Lanes, Real};
+use crate::lanes::Lanes;
 use crate::vec2::Vec2;
+
+pub(super) use lane::{LANE_VALUES, LaneValues, at};
 
 /// Velocity of the bodies of one side of a batch, m/s and rad/s, and their inverse mass.
 #[derive(Clone, Copy, Debug)]
@@ -95,8 +99,8 @@ pub struct Parts<L: Lanes> {
     pub geometry: [L; 8],
     /// See [`crate::contact::gap`].
     pub gap: [L; 4],
-    /// See [`crate::contact::impulse`].
-    pub impulse: [L; 4],
+    /// Of both points and along the tangent, N·s per substep.
+    pub impulses: [L; 3],
     /// 1/m, 1/I of A and B.
     pub inverse_masses: [[L; 2]; 2],
     /// Lanes whose manifold has two points.
@@ -131,7 +135,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
                 levers: levers.each(exists),
                 mass: exists(inverse(response)),
                 separation: exists(parts.gap[k]),
-                velocity_impulse: parts.impulse[k] * response,
+                velocity_impulse: parts.impulses[k] * response,
             }
         });
         let middle = if POINTS == 1 {
@@ -153,25 +157,26 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             points,
             tangent_levers,
             tangent_mass: inverse(response(tangent_levers)),
-            tangent_impulse: parts.impulse[2],
+            tangent_impulse: parts.impulses[2],
             friction: parts.gap[2],
             restitution: parts.gap[3],
         }
     }
 
-    /// Puts back what lanes without a bit in `fresh` held, which would come back rounded from an impulse, and the levers
-    /// of their tangents, which today's gap would move: which lanes share a batch must not matter.
-    pub fn keep_velocity_impulses(&mut self, old: &Self, fresh: u32) {
-        let lanes: [L::Elem; 16] =
-            crate::each::indexed(|k| if fresh >> k & 1 == 1 { L::Elem::ONE } else { L::Elem::ZERO });
-        let fresh = L::zero().lt(L::load(&lanes));
-        for (point, old) in self.points.iter_mut().zip(&old.points) {
-            point.velocity_impulse = L::select(fresh, point.velocity_impulse, old.velocity_impulse);
+    /// Of nothing: what padding lanes hold.
+    pub(super) fn nothing() -> Self {
+        let zero = L::zero();
+        let point = Point { levers: [zero; 2], mass: zero, separation: zero, velocity_impulse: zero };
+        Self {
+            normal: Vec2::zero(),
+            inv_inertia: [zero; 2],
+            points: [point; POINTS],
+            tangent_levers: [zero; 2],
+            tangent_mass: zero,
+            tangent_impulse: zero,
+            friction: zero,
+            restitution: zero,
         }
-        for (lever, old) in self.tangent_levers.iter_mut().zip(old.tangent_levers) {
-            *lever = L::select(fresh, *lever, old);
-        }
-        self.tangent_mass = L::select(fresh, self.tangent_mass, old.tangent_mass);
     }
 
     /// The tangent: the normal turned a quarter counter-clockwise.
@@ -182,7 +187,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// What the separations of the points change by when A and B move and turn so little.
     #[inline(always)]
-    pub fn change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
+    pub fn gap_change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
         let along = Vec2::new(b[0] - a[0], b[1] - a[1]).dot(self.normal);
         crate::each::indexed(|k| {
             let [la, lb] = self.points[k].levers;
@@ -193,7 +198,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     /// What the separations change by with the displacements of both sides, rows per slot.
     #[inline(always)]
     pub(super) fn change_by(&self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) -> [L; POINTS] {
-        self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
+        self.gap_change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b))
     }
 
     /// Brings the separations up to date with the displacement of both sides, unless they are.
@@ -202,7 +207,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         if ends.fresh {
             return;
         }
-        let change = self.change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
+        let change = self.gap_change(&L::gather_fours(moved, ends.a), &L::gather_fours(moved, ends.b));
         for k in 0..POINTS {
             self.points[k].separation = self.points[k].separation + change[k];
         }

@@ -11,11 +11,12 @@
 //! The two points of a face are solved together, directly and by cases ([`non_negative`]): one after the
 //! other left a resting box turning at 0.02 rad/s and creeping sideways at 5 cm/s; together, neither.
 
+use super::batches::{Ends, Visit};
 use super::block::{cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
 use super::joint::Stiffness;
 use super::scheme::{ContactSolver, Pairs, Substep};
-use super::stream::{Ends, Stream, Visit};
+use super::stream::Stream;
 use super::{SceneNeeds, SolverContext};
 use crate::each::Each as _;
 use crate::lanes::Lanes;

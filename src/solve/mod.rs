@@ -9,11 +9,11 @@
 //!
 //! | part of a step | joints | contacts |
 //! |---|---|---|
-//! | prepare | [`Solving::prepare_joints`]: joints and poses → constraints | [`Solving::prepare`]: manifolds → constraints |
+//! | prepare | [`Solving::prepare_joints`]: joints and poses → constraints | [`Solving::follow`], [`Solving::prepare`]: manifolds → constraints |
 //! | [`Solving::begin`] | impulses → rows | impulses → rows; approaches |
 //! | [`Solving::solve`] | rows → rows, impulses | rows → rows, impulses |
 //! | [`Solving::settle`] (not `pgs`, `impulse`) | rows, displacements → rows, impulses, arms | rows → rows, impulses |
-//! | end | [`Solving::end_joints`]: impulses, angles → joints | [`Solving::end`]: bounces; [`Solving::hand_back`] before manifolds are found anew |
+//! | end | [`Solving::end_joints`]: impulses, angles → joints | [`Solving::end`]: bounces, deep overlaps |
 //!
 //! # After ten seconds
 //! Largest overlap (mm) · root mean square of the speed (m/s) after 600 steps of 1/60 s; f32, 8 lanes, all skips, velocity
@@ -34,15 +34,16 @@
 //! in each, `soft` twice, `xpbd` twice. While polygons/150 falls, all overlap by 150 to 260 mm for a moment.
 
 mod avbd;
+mod batches;
 mod block;
 pub(crate) mod bounce;
-pub(crate) mod color;
+mod color;
 pub(crate) mod constraint;
 mod deep;
 mod impulse;
 pub(crate) mod joint;
+mod lengths;
 mod pgs;
-mod rows;
 mod scheme;
 pub(crate) mod slender_stack;
 pub(crate) mod soft;

@@ -6,11 +6,12 @@
 //! the bodies: this is what `soft` relaxes away. Source: Catto, Iterative Dynamics with Temporal Coherence, GDC 2005.
 
 use super::SolverContext;
+use super::batches::{Ends, Visit};
 use super::block::{answer, cross, non_negative};
 use super::constraint::{Constraint, Normals, Side};
 use super::joint::Stiffness;
 use super::scheme::{ContactSolver, Pairs, Substep};
-use super::stream::{Ends, Stream, Visit};
+use super::stream::Stream;
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 

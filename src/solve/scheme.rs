@@ -62,8 +62,6 @@ pub(crate) struct Pairs<'a, L: Lanes> {
     pub manifolds: &'a mut Manifolds<L::Elem>,
     /// What `avbd` keeps.
     pub avbd: &'a mut Avbd<L>,
-    /// The graph of contacts is not the one `avbd` was cut for.
-    pub graph_outdated: &'a mut bool,
 }
 
 /// A solver: one file each, which ends as its recipe.

@@ -15,8 +15,8 @@
 //! Weights are those of uniform gravity, not the impulses that contacts hold: they are right from the first step on,
 //! and an impact asks for nothing.
 
+use super::batches::{Ends, Visit};
 use super::constraint::Constraint;
-use super::stream::{Ends, Visit};
 use super::substep_group::Goal;
 use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;

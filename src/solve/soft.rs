@@ -14,12 +14,12 @@
 //! * **Gaps.** A point apart by s > 0 may close by s in a substep, no more. The relaxation leaves points alone that
 //!   carried nothing in the push.
 
+use super::batches::{Ends, Visit};
 use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::deep::DEEP;
 use super::joint::Stiffness;
 use super::scheme::{ContactSolver, Pairs, Substep};
-use super::stream::{Ends, Visit};
 use crate::each::Each as _;
 use crate::lanes::Lanes;
 

@@ -1,55 +1,37 @@
 //! What a step asks of its solver, in order; what each of them does is in the files beside this one.
 
 mod end;
-mod latest;
 
-use super::bounce::{self, Bounces};
-use super::color::Coloring;
+use super::bounce::{self, Bouncing};
 use super::joint::{JointStream, Sources};
+use super::lengths::StepLengths;
 use super::scheme::{Pairs, Substep, solver_of};
-use super::soft;
-use super::stream::{Stream, WarmStart};
+use super::stream::{Follow, Stream, WarmStart};
 use super::substep_group::{Goal, SubstepGroups};
 use super::{SolverContext, avbd, carries_impulses, deep, pushes};
-use crate::body::Bodies;
-use crate::contact::Manifolds;
+use crate::body::{Bodies, BodyKind};
+use crate::contact::{ContactRow, Manifolds};
 use crate::each::Each as _;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::motion::{Motion, Warm};
 use crate::settings::Solver;
 
-use latest::{Follow, Latest};
-
-/// Colours, constraints and what solvers keep; memory is kept from step to step.
+/// Constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Solving<L: Lanes> {
-    coloring: Coloring,
     stream: Stream<L>,
     joints: JointStream<L>,
     substep_groups: SubstepGroups<L::Elem>,
     /// The substep group that is being solved, where there are several.
     substep_group: Option<usize>,
-    bounces: Bounces<L>,
-    /// What bounces displace, per slot: x, y (metres), angle, –.
-    displaced: Vec<[L::Elem; 4]>,
+    bouncing: Bouncing<L>,
     avbd: avbd::Avbd<L>,
-    /// The graph of contacts is not the one `avbd` was cut for.
-    graph_outdated: bool,
-    /// The substep the impulses of the last step belong to, seconds.
-    last_h_secs: f64,
-    /// This substep over that one.
-    scale: f64,
-    /// The longest step that contacts still remember, seconds; see [`soft::STIFFENING`].
-    remembered_secs: f64,
-    /// The same of joints.
-    last_joint_h_secs: f64,
-    joint_scale: f64,
-    latest: Latest,
-    /// Bodies were fast enough to bounce as this step began: their approaches were looked at.
-    may_bounce: bool,
-    /// Something bounces in this step.
-    bouncing: bool,
+    lengths: StepLengths,
+    /// Gaps of constraints have yet to hear of the last displacements.
+    behind: bool,
+    /// The solver works on the pairs: their rows hold gaps and impulses, and constraints are made of them when asked.
+    in_rows: bool,
     deep: deep::Apart,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
@@ -62,23 +44,15 @@ const CARRIED_STEPS: u32 = 16;
 impl<L: Lanes> Default for Solving<L> {
     fn default() -> Self {
         Self {
-            coloring: Coloring::default(),
             stream: Stream::default(),
             joints: JointStream::default(),
             substep_groups: SubstepGroups::default(),
             substep_group: None,
-            bounces: Bounces::default(),
-            displaced: Vec::new(),
+            bouncing: Bouncing::default(),
             avbd: avbd::Avbd::default(),
-            graph_outdated: true,
-            last_h_secs: 0.0,
-            scale: 1.0,
-            remembered_secs: 0.0,
-            last_joint_h_secs: 0.0,
-            joint_scale: 1.0,
-            latest: Latest::default(),
-            may_bounce: false,
-            bouncing: false,
+            lengths: StepLengths::default(),
+            behind: false,
+            in_rows: false,
             deep: deep::Apart::default(),
             until_summed: 0,
         }
@@ -86,31 +60,38 @@ impl<L: Lanes> Default for Solving<L> {
 }
 
 impl<L: Lanes> Solving<L> {
-    /// Gives islands their substeps; says whether any has others than before. Then all constraints are to be prepared.
-    pub fn decide_substep_groups(
-        &mut self,
-        goal: &Goal,
-        bodies: &Bodies<L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-        joints: &Joints<L::Elem>,
-        motion: &mut Motion<L::Elem>,
-    ) -> bool {
-        let ends = || joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
+    /// As a step begins: reads what contacts carry, and which stand on each other, if it is time to; says whether it was.
+    pub fn look(&mut self, goal: &Goal, bodies: &Bodies<L::Elem>, joints: &Joints<L::Elem>) -> bool {
         let looked = self.substep_groups.looks(goal);
         if looked {
             if goal.max_sag.is_some() {
                 self.stream.visit(&mut self.substep_groups.reading());
             }
             self.stream.visit(&mut self.substep_groups.touching(goal));
-            self.substep_groups.weigh(goal, bodies, ends());
+            self.substep_groups.weigh(goal, bodies, ends_of(joints));
         }
-        let wanted = self.substep_groups.wants(goal, looked);
-        let changed =
-            wanted && self.substep_groups.decide(goal, bodies, manifolds, ends(), &motion.runs, looked);
+        looked
+    }
+
+    /// Gives islands their substeps; says whether any has others than before. `looked`: [`Solving::look`] did.
+    pub fn decide_substep_groups(
+        &mut self,
+        (goal, looked): (Goal, bool),
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        joints: &Joints<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) -> bool {
+        let wanted = self.substep_groups.wants(&goal, looked);
+        let changed = wanted
+            && self.substep_groups.decide(&goal, bodies, manifolds, ends_of(joints), &motion.runs, looked);
         self.substep_groups.count_step(looked);
         if changed {
-            self.hand_back(manifolds, motion);
-            self.substep_groups.scale_impulses(bodies, manifolds);
+            self.catch_up(motion);
+            let groups = &self.substep_groups;
+            let moves = |slot: &u32| bodies.kind(*slot as usize) == BodyKind::Dynamic;
+            let scale = |slots: [u32; 2]| groups.scale(slots.into_iter().find(moves)? as usize);
+            self.stream.regroup(manifolds, self.in_rows, groups, scale);
             motion.substep_groups.clone_from(self.substep_groups.index());
         }
         changed
@@ -149,8 +130,42 @@ impl<L: Lanes> Solving<L> {
         })
     }
 
-    /// Makes constraints of the manifolds found: all of them where the graph of contacts has changed, else those of
-    /// the places looked at.
+    /// Takes in what the narrow phase found: contacts that touch no more go, and impulses stay with the features of points.
+    pub fn follow(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.stream.overflows() {
+            self.catch_up(motion);
+        }
+        self.stream.follow(manifolds, self.in_rows);
+    }
+
+    /// Takes in that pairs were listed anew.
+    pub fn rename(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.stream.overflows() {
+            self.catch_up(motion);
+        }
+        self.stream.rename(manifolds, self.in_rows);
+    }
+
+    /// Gaps hear of the last displacements now: before bodies that moved are seen otherwise, or contacts leave their lanes.
+    pub fn catch_up(&mut self, motion: &Motion<L::Elem>) {
+        if std::mem::take(&mut self.behind) {
+            self.stream.visit(&mut Follow { moved: motion.moved.fours() });
+        }
+    }
+
+    /// Puts the contacts of which `which(slots)` holds down to their pairs' rows: they will not be solved.
+    pub fn put_down(
+        &mut self,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+        which: impl Fn([u32; 2]) -> bool,
+    ) {
+        self.catch_up(motion);
+        self.stream.put_down(manifolds, self.in_rows, which);
+    }
+
+    /// Makes constraints of the manifolds looked at; contacts that have come get a place first. `changed`: which pairs touch
+    /// has, or with how many points.
     pub fn prepare(
         &mut self,
         bodies: &Bodies<L::Elem>,
@@ -158,15 +173,15 @@ impl<L: Lanes> Solving<L> {
         changed: bool,
         motion: &Motion<L::Elem>,
     ) {
-        self.graph_outdated |= changed;
-        if changed {
-            self.coloring.run(bodies, manifolds);
-            self.stream.cut(&self.coloring, manifolds, &self.substep_groups);
-        } else {
-            looked_at.for_each(|place| self.stream.touch(place));
+        self.avbd.outdated |= changed;
+        if changed || self.stream.is_outdated() {
+            self.stream.arrange(bodies, manifolds, &self.substep_groups);
         }
-        self.stream.begin(manifolds, motion.inverse_masses.fours());
-        if self.latest != Latest::BeforeDisplacements {
+        let homes = manifolds.homes();
+        looked_at.for_each(|place| self.stream.touch(homes[place as usize]));
+        let moved = self.behind.then_some(motion.moved.fours());
+        self.stream.prepare(manifolds, motion.inverse_masses.fours(), moved);
+        if !self.behind {
             self.stream.age();
         }
         self.until_summed = 0;
@@ -188,30 +203,10 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// Forgets what constraints hold: the pairs they belong to are gone.
+    /// Forgets all contacts: the pairs they belong to are gone.
     pub fn forget(&mut self) {
-        (self.latest, self.until_summed) = (Latest::InPairs, 0);
-    }
-
-    /// Hands gaps and impulses of the places that will be looked at back to them, and of those whose constraints are
-    /// prepared along with them; `prepare` is to follow.
-    pub fn hand_back_chosen(
-        &mut self,
-        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = u32>),
-        motion: &Motion<L::Elem>,
-    ) {
-        if self.latest != Latest::InPairs {
-            looked_at.for_each(|place| self.stream.touch(place));
-            self.stream.end_where(true, manifolds, self.latest.yet_to_follow(motion));
-        }
-    }
-
-    /// Hands gaps and impulses back to the pairs, those of [`Solving::hand_back_chosen`] left out: they have been.
-    pub fn hand_back(&mut self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
-        if self.latest != Latest::InPairs {
-            self.stream.end_where(false, manifolds, self.latest.yet_to_follow(motion));
-            self.latest = Latest::InPairs;
-        }
+        self.stream.clear();
+        self.until_summed = 0;
     }
 
     /// Makes constraints of joints, where they, bodies, the substep or who is `awake` have changed, and finds where
@@ -225,8 +220,7 @@ impl<L: Lanes> Solving<L> {
     ) {
         let substeps = self.substep_groups.of_joints().unwrap_or(context.plan.substeps);
         let [h_secs, share] = [context.dt_secs / f64::from(substeps), context.plan.impulse_share()];
-        let last = std::mem::replace(&mut self.last_joint_h_secs, h_secs);
-        self.joint_scale = if last > 0.0 { h_secs / last } else { 1.0 };
+        self.lengths.begin_joints(h_secs);
         let direct = context.solver == Solver::Soft;
         self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0, direct }, awake.1);
         self.joints.place(bodies);
@@ -240,15 +234,14 @@ impl<L: Lanes> Solving<L> {
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> Warm {
-        let (h, last) = (context.plan.h_secs, std::mem::replace(&mut self.last_h_secs, context.plan.h_secs));
-        self.scale = if last > 0.0 { h / last } else { 1.0 };
-        self.remembered_secs = context.dt_secs.max(self.remembered_secs * soft::STIFFENING);
+        self.in_rows = context.solver == Solver::Avbd;
+        let same_length = self.lengths.begin(context);
         let may_bounce = context.needs.restitution && pushes(context.solver) && motion.may_bounce;
-        let might_bounce = std::mem::replace(&mut self.may_bounce, may_bounce);
-        self.bouncing = may_bounce && self.note_approaches(context, bodies, manifolds, motion);
+        let might_bounce = std::mem::replace(&mut self.bouncing.looked, may_bounce);
+        self.bouncing.any = may_bounce && self.note_approaches(context, bodies, manifolds, motion);
         let carries = carries_impulses(context.solver);
         // Joints are placed anew in each step; where approaches were looked at the rows are theirs.
-        let settled = self.joints.is_empty() && !might_bounce && !may_bounce && h == last;
+        let settled = self.joints.is_empty() && !might_bounce && !may_bounce && same_length;
         if carries && settled && self.until_summed > 0 {
             self.until_summed -= 1;
             return Warm::Carried;
@@ -257,8 +250,8 @@ impl<L: Lanes> Solving<L> {
         motion.clear_rows();
         if carries {
             let rows = motion.velocity.fours_mut();
-            self.joints.warm_start(rows, self.joint_scale, 1.0);
-            self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.scale) });
+            self.joints.warm_start(rows, self.lengths.joint_scale, 1.0);
+            self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.lengths.scale) });
         }
         Warm::Summed
     }
@@ -271,16 +264,16 @@ impl<L: Lanes> Solving<L> {
         manifolds: &Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
-        self.follow_pairs(context, manifolds, motion);
+        self.take_rows(manifolds, motion);
         motion.load::<L>(context.plan, bodies);
-        self.bounces.resize(self.stream.batches());
+        self.bouncing.bounces.resize(self.stream.batches());
         let mut pass = bounce::NoteApproach {
             rows: motion.velocity.fours(),
             accelerations: motion.acceleration.fours(),
-            moved: self.latest.yet_to_follow(motion),
+            moved: self.behind.then_some(motion.moved.fours()),
             threshold: L::lit(context.bounce_threshold()),
             dt_secs: L::lit(context.dt_secs),
-            bounces: &mut self.bounces,
+            bounces: &mut self.bouncing.bounces,
             any: false,
         };
         self.stream.visit(&mut pass);
@@ -303,9 +296,8 @@ impl<L: Lanes> Solving<L> {
         manifolds: &mut Manifolds<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) {
-        let (mut substep, avbd, graph_outdated) = self.substep(context, motion, false);
-        let pairs = Pairs { bodies, manifolds, avbd, graph_outdated };
-        solver_of(context.solver).relax(&mut substep, pairs);
+        let (mut substep, avbd) = self.substep(context, motion, false);
+        solver_of(context.solver).relax(&mut substep, Pairs { bodies, manifolds, avbd });
     }
 
     /// A substep, and what beside it only `avbd` uses.
@@ -314,7 +306,7 @@ impl<L: Lanes> Solving<L> {
         context: &'a SolverContext<'a, L::Elem>,
         motion: &'a mut Motion<L::Elem>,
         first: bool,
-    ) -> (Substep<'a, L>, &'a mut avbd::Avbd<L>, &'a mut bool) {
+    ) -> (Substep<'a, L>, &'a mut avbd::Avbd<L>) {
         let with_joints = self.with_joints();
         let substep = Substep {
             context,
@@ -322,13 +314,12 @@ impl<L: Lanes> Solving<L> {
             joints: with_joints.then_some(&mut self.joints),
             motion,
             first,
-            // Constraints that were not prepared anew have yet to hear of the last step's last displacement.
-            behind: !first || self.latest == Latest::BeforeDisplacements,
+            behind: !first || self.behind,
             deep: self.deep.steps > 0,
-            softened: context.dt_secs / self.remembered_secs.max(context.dt_secs),
-            joint_scale: self.joint_scale,
+            softened: self.lengths.softened(context.dt_secs),
+            joint_scale: self.lengths.joint_scale,
         };
-        (substep, &mut self.avbd, &mut self.graph_outdated)
+        (substep, &mut self.avbd)
     }
 
     /// The manifolds with today's gaps and impulses.
@@ -338,20 +329,27 @@ impl<L: Lanes> Solving<L> {
         motion: &Motion<L::Elem>,
     ) -> Manifolds<L::Elem> {
         let mut manifolds = manifolds.clone();
-        if !self.pairs_are_up_to_date() {
-            self.stream.clone().end_where(false, &mut manifolds, self.yet_to_follow(motion));
-        }
+        self.write_rows(&mut manifolds, motion);
         manifolds
     }
 
-    /// Do pairs hold today's gaps and impulses? Else constraints do.
-    pub(super) fn pairs_are_up_to_date(&self) -> bool {
-        self.latest == Latest::InPairs
+    /// Writes today's gaps and impulses to the rows of their pairs, for whoever reads those.
+    pub fn write_rows(&self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if !self.in_rows {
+            self.stream.write_rows(manifolds, self.behind.then_some(motion.moved.fours()));
+        }
     }
 
-    /// The displacements that gaps of constraints have yet to hear of.
-    pub(super) fn yet_to_follow<'a>(&self, motion: &'a Motion<L::Elem>) -> Option<&'a [[L::Elem; 4]]> {
-        self.latest.yet_to_follow(motion)
+    /// Tells of each touching pair with its gaps and impulses of the step's end, those of sleeping bodies last.
+    pub fn each_contact(
+        &self,
+        manifolds: &Manifolds<L::Elem>,
+        motion: &Motion<L::Elem>,
+        mut tell: impl FnMut(&ContactRow<L::Elem>),
+    ) {
+        let moved = self.behind.then_some(motion.moved.fours());
+        self.stream.each_contact(manifolds, moved, self.in_rows, &mut tell);
+        manifolds.resting_rows().for_each(|row| tell(&row));
     }
 
     /// Hands impulses and angles back to the joints.
@@ -368,12 +366,13 @@ impl<L: Lanes> Solving<L> {
     pub fn joints(&self) -> &JointStream<L> {
         &self.joints
     }
-    /// The colours.
-    pub fn coloring(&self) -> &Coloring {
-        &self.coloring
-    }
     /// The constraints.
     pub fn stream(&self) -> &Stream<L> {
         &self.stream
     }
+}
+
+/// Slots of the bodies that joints hold.
+fn ends_of<R: Real>(joints: &Joints<R>) -> impl Iterator<Item = [u32; 2]> {
+    joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32))
 }

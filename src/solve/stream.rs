@@ -1,373 +1,283 @@
-//! The stream: all contacts of a step as constraints in batches of lanes, colour by colour.
+//! The stream: all contacts that are solved, as constraints in lists of batches, one list per colour of each substep group.
 //!
-//! | part of a step | reads | writes |
-//! |---|---|---|
-//! | [`Stream::cut`] when contacts come or go | colours | batches |
-//! | [`Stream::begin`] | manifolds looked at, masses | constraints, warm start per body |
-//! | [`Stream::visit`] per pass | constraints, rows | constraints, rows |
-//! | [`Stream::end_where`] before manifolds are found anew | constraints, last displacements | gaps and impulses of pairs |
+//! A contact lives in one lane of one list ([`Home`]), with its gaps and impulses, until its bodies part.
 //!
-//! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
-//! changes a row and every loop over lanes is of fixed length.
+//! | part of a step | what happens |
+//! |---|---|
+//! | [`Stream::rename`] when pairs are listed anew | contacts whose pair has left the list go, the others learn its new place |
+//! | [`Stream::follow`] when manifolds are found | contacts that touch no more go; impulses stay with the features of points |
+//! | [`Stream::arrange`] when contacts have come or gone | new ones get a colour and a lane |
+//! | [`Stream::prepare`] | lanes whose manifolds were found anew are made of them |
+//! | [`Stream::visit`] per pass | constraints, rows |
+//!
+//! Within a colour the order says nothing, as contacts share no body that moves: one that goes leaves its lane to the
+//! list's last. Only the overflow, of which each contact is a batch, keeps the order of pairs: it is put down to the
+//! pairs' rows and taken up again.
 
-use super::color::Coloring;
-use super::constraint::{Constraint, Parts, Point, Side};
+mod moves;
+mod read;
+
+use std::ops::Range;
+
+use super::batches::{Batches, Ends, Visit};
+use super::color::{COLORS, Colors};
+use super::constraint::{Constraint, LANE_VALUES, LaneValues, Side, at};
 use super::substep_group::SubstepGroups;
-use crate::contact::Manifolds;
+use crate::body::Bodies;
+use crate::contact::{Changed, Home, Manifolds, impulse};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
-/// What a pass does to one batch; `POINTS` is 1 or 2.
-pub trait Visit<L: Lanes> {
-    /// The places of the pairs, and slots of bodies A and B, `WIDTH` each.
-    fn visit<const POINTS: usize>(
-        &mut self,
-        constraint: &mut Constraint<L, POINTS>,
-        ends: Ends<'_>,
-        at: usize,
-    );
-}
+/// Lists of one substep group: one per colour, and the overflow.
+const LISTS: usize = COLORS + 1;
 
-/// Whom a batch's lanes join: `WIDTH` entries each count. Slots are held by value: a scatter then needs no
-/// second check of what the gather has checked.
-#[derive(Clone, Copy, Debug)]
-pub struct Ends<'a> {
-    /// Places of pairs.
-    pub place: &'a [u32],
-    /// Slots of bodies A.
-    pub a: &'a [u32; 16],
-    /// Slots of bodies B.
-    pub b: &'a [u32; 16],
-    /// The gaps already know the displacements that others have yet to follow.
-    pub fresh: bool,
-}
+/// Lanes a list's last batch is counted with when one-point contacts may join its others: the same at every
+/// width, so that width never decides which kernel solves a contact.
+const JOIN: usize = 8;
 
-/// Batches of contacts solved with the same number of points.
+/// The contacts of one colour and substep group.
 #[derive(Clone, Debug)]
-struct Batches<L, const POINTS: usize> {
-    constraints: Vec<Constraint<L, POINTS>>,
-    /// `WIDTH` entries per batch, as are `a` and `b`.
-    place: Vec<u32>,
-    a: Vec<u32>,
-    b: Vec<u32>,
-    /// Which lanes' manifolds were found anew.
-    stale: Vec<u32>,
-    /// Batches prepared in this step.
-    fresh: Vec<bool>,
-}
-
-impl<L, const POINTS: usize> Default for Batches<L, POINTS> {
-    fn default() -> Self {
-        Self {
-            constraints: Vec::new(),
-            place: Vec::new(),
-            a: Vec::new(),
-            b: Vec::new(),
-            stale: Vec::new(),
-            fresh: Vec::new(),
-        }
-    }
-}
-
-impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
-    fn clear(&mut self) {
-        self.place.clear();
-        self.a.clear();
-        self.b.clear();
-    }
-
-    fn len(&self) -> usize {
-        self.place.len() / L::WIDTH
-    }
-
-    /// Appends contacts, at most `width` per batch, and notes where each went.
-    fn push(&mut self, places: &[u32], width: usize, manifolds: &Manifolds<L::Elem>, batch_of: &mut [Home]) {
-        for places in places.chunks(width) {
-            let batch = self.len() as u32;
-            for (lane, &place) in places.iter().enumerate() {
-                let [a, b] = manifolds.slots(place as usize);
-                self.place.push(place);
-                self.a.push(a);
-                self.b.push(b);
-                batch_of[place as usize] = Home { batch, lane: lane as u8, points: POINTS as u8 };
-            }
-            let padded = (batch as usize + 1) * L::WIDTH;
-            self.place.resize(padded, manifolds.padding());
-            self.a.resize(padded, 0);
-            self.b.resize(padded, 0);
-        }
-    }
-
-    fn finish(&mut self, empty: Constraint<L, POINTS>) {
-        let batches = self.len();
-        self.constraints.resize(batches, empty);
-        self.stale.clear();
-        self.stale.resize(batches, ALL_LANES);
-        self.fresh.clear();
-        self.fresh.resize(batches, false);
-    }
-
-    /// Visits the batches of which lanes are stale, or those of which none is.
-    fn visit_where(&mut self, stale: bool, visitor: &mut impl Visit<L>) {
-        for at in 0..self.len() {
-            if (self.stale[at] != 0) == stale {
-                self.visit(at..at + 1, visitor);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn visit(&mut self, batches: std::ops::Range<usize>, visitor: &mut impl Visit<L>) {
-        for at in batches {
-            // Here and in `look` in full: handed out by a function, arrays cost the impulse solver 6 %.
-            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-            let (mut a, mut b) = ([0; 16], [0; 16]);
-            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
-            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            let ends = Ends { place: &self.place[lanes], a: &a, b: &b, fresh: self.fresh[at] };
-            visitor.visit(&mut self.constraints[at], ends, at);
-        }
-    }
-
-    /// Visits all, on copies.
-    #[inline(always)]
-    fn look(&self, visitor: &mut impl Visit<L>) {
-        for at in 0..self.len() {
-            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-            let (mut a, mut b) = ([0; 16], [0; 16]);
-            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
-            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            let ends = Ends { place: &self.place[lanes], a: &a, b: &b, fresh: self.fresh[at] };
-            visitor.visit(&mut self.constraints[at].clone(), ends, at);
-        }
-    }
-
-    fn prepare_stale(&mut self, manifolds: &Manifolds<L::Elem>, inverse_masses: &[[L::Elem; 4]]) {
-        for at in 0..self.len() {
-            let stale = std::mem::take(&mut self.stale[at]);
-            if stale != 0 {
-                self.fresh[at] = true;
-                let old = self.constraints[at];
-                let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
-                let slots = [&self.a[lanes.clone()], &self.b[lanes.clone()]];
-                self.constraints[at] = prepared(manifolds, inverse_masses, &self.place[lanes], slots);
-                if stale != ALL_LANES {
-                    self.constraints[at].keep_velocity_impulses(&old, stale);
-                }
-            }
-        }
-    }
-}
-
-#[inline(always)]
-fn prepared<L: Lanes, const POINTS: usize>(
-    manifolds: &Manifolds<L::Elem>,
-    inverse_masses: &[[L::Elem; 4]],
-    places: &[u32],
-    slots: [&[u32]; 2],
-) -> Constraint<L, POINTS> {
-    let mut two_points = [L::Elem::ZERO; 16];
-    if POINTS == 2 {
-        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(places) {
-            *two = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
-        }
-    }
-    let masses = |slots: &[u32]| {
-        let [inv_mass, inv_inertia, ..] = L::gather_fours(inverse_masses, slots);
-        [inv_mass, inv_inertia]
-    };
-    Constraint::prepare(&Parts {
-        geometry: L::gather_rows(manifolds.geometry(), places),
-        gap: L::gather_fours(manifolds.gaps(), places),
-        impulse: L::gather_fours(manifolds.impulses(), places),
-        inverse_masses: slots.each(masses),
-        two_points: L::zero().lt(L::load(&two_points)),
-    })
-}
-
-/// One colour's batches, as ranges.
-#[derive(Clone, Debug)]
-struct Span {
-    two: std::ops::Range<usize>,
-    one: std::ops::Range<usize>,
-}
-
-/// All contacts in batches; memory is kept from step to step.
-#[derive(Clone, Debug)]
-pub struct Stream<L: Lanes> {
+struct List<L: Lanes> {
     two: Batches<L, 2>,
     one: Batches<L, 1>,
-    /// Colour by colour within a substep group, substep group by substep group.
-    spans: Vec<Span>,
-    /// Where each substep group's spans end.
-    substep_group_ends: Vec<usize>,
-    /// The spans passes go over.
-    active: std::ops::Range<usize>,
-    /// Places of one colour and substep group, while batches are cut.
+    /// One-point contacts are solved as two-point ones (of which one does nothing), as that saves a batch.
+    joined: bool,
+    /// Batches of the lists before it.
+    base: [usize; 2],
+}
+
+impl<L: Lanes> Default for List<L> {
+    fn default() -> Self {
+        Self { two: Batches::default(), one: Batches::default(), joined: false, base: [0; 2] }
+    }
+}
+
+impl<L: Lanes> List<L> {
+    fn lane(&self, home: Home) -> LaneValues<L::Elem> {
+        if home.two { self.two.lane(home.lane) } else { self.one.lane(home.lane) }
+    }
+    fn slots(&self, home: Home) -> [u32; 2] {
+        if home.two { self.two.slots(home.lane) } else { self.one.slots(home.lane) }
+    }
+    fn is_stale(&self, home: Home) -> bool {
+        if home.two { self.two.is_stale(home.lane) } else { self.one.is_stale(home.lane) }
+    }
+    fn is_fresh(&self, home: Home) -> bool {
+        if home.two { self.two.is_fresh(home.lane) } else { self.one.is_fresh(home.lane) }
+    }
+    /// Changes what a lane holds; it is to be prepared.
+    fn set_lane(&mut self, home: Home, values: &LaneValues<L::Elem>) {
+        if home.two {
+            self.two.set_lane(home.lane, values);
+        } else {
+            self.one.set_lane(home.lane, values);
+        }
+        self.touch(home);
+    }
+    #[inline(always)]
+    fn touch(&mut self, home: Home) {
+        if home.two {
+            self.two.touch(home.lane);
+        } else {
+            self.one.touch(home.lane);
+        }
+    }
+    fn rename(&mut self, home: Home, place: u32) {
+        if home.two {
+            self.two.rename(home.lane, place);
+        } else {
+            self.one.rename(home.lane, place);
+        }
+    }
+    /// Takes a lane out; returns the pair that has moved there.
+    fn remove(&mut self, home: Home, padding: u32) -> Option<u32> {
+        if home.two { self.two.remove(home.lane, padding) } else { self.one.remove(home.lane, padding) }
+    }
+    fn clear(&mut self) {
+        self.two.clear();
+        self.one.clear();
+        self.joined = false;
+    }
+}
+
+/// All contacts in lanes; memory is kept from step to step.
+#[derive(Clone, Debug)]
+pub struct Stream<L: Lanes> {
+    lists: Vec<List<L>>,
+    colors: Colors,
+    /// The lists that hold something: colour by colour within a substep group, substep group by substep group.
+    order: Vec<u16>,
+    /// Where each substep group's lists end in `order`.
+    group_ends: Vec<usize>,
+    /// What passes go over, of `order`.
+    active: Range<usize>,
+    /// Contacts have come or gone since they were last arranged.
+    outdated: bool,
+    /// Places and homes in hand.
     picked: Vec<u32>,
-    /// Per place of a pair.
-    batch_of: Vec<Home>,
+    gone: Vec<Home>,
+    recoded: Vec<Changed>,
 }
 
 impl<L: Lanes> Default for Stream<L> {
     fn default() -> Self {
         Self {
-            two: Batches::default(),
-            one: Batches::default(),
-            spans: Vec::new(),
-            substep_group_ends: Vec::new(),
+            lists: Vec::new(),
+            colors: Colors::default(),
+            order: Vec::new(),
+            group_ends: vec![0],
             active: 0..0,
+            outdated: false,
             picked: Vec::new(),
-            batch_of: Vec::new(),
+            gone: Vec::new(),
+            recoded: Vec::new(),
         }
     }
 }
 
-/// Which lane of which batch holds a pair's contact.
-#[derive(Clone, Copy, Debug)]
-struct Home {
-    batch: u32,
-    lane: u8,
-    /// 2 or 1: whose batches; 0 for a pair that does not touch.
-    points: u8,
+/// What a lane holds before it is prepared: impulses N·s, as if masses were 1.
+fn impulses_alone<R: Real>(row: [R; 4]) -> LaneValues<R> {
+    let mut values = [R::ZERO; LANE_VALUES];
+    for k in 0..2 {
+        values[at::MASS[k]] = R::ONE;
+        values[at::VELOCITY_IMPULSE[k]] = row[impulse::NORMAL + k];
+    }
+    values[at::TANGENT_IMPULSE] = row[impulse::TANGENT];
+    values
 }
-
-/// In no batch.
-const NOWHERE: Home = Home { batch: 0, lane: 0, points: 0 };
-/// All lanes of a batch are stale.
-const ALL_LANES: u32 = u32::MAX;
 
 impl<L: Lanes> Stream<L> {
-    /// Cuts the colours into batches of at most `WIDTH` contacts, those of each substep group apart.
-    pub fn cut(
-        &mut self,
-        coloring: &Coloring,
-        manifolds: &Manifolds<L::Elem>,
-        substep_groups: &SubstepGroups<L::Elem>,
-    ) {
-        self.two.clear();
-        self.one.clear();
-        self.spans.clear();
-        self.substep_group_ends.clear();
-        self.batch_of.clear();
-        self.batch_of.resize(manifolds.pairs() + 2, NOWHERE);
-        for substep_group in 0..substep_groups.count() {
-            self.cut_substep_group(coloring, manifolds, |place| {
-                substep_groups.of_pair(manifolds.slots(place as usize)) == substep_group
-            });
-            self.substep_group_ends.push(self.spans.len());
+    /// Forgets all contacts.
+    pub fn clear(&mut self) {
+        for list in &mut self.lists {
+            list.clear();
         }
-        self.active = 0..self.spans.len();
-        let nothing = Parts {
-            geometry: [L::zero(); 8],
-            gap: [L::zero(); 4],
-            impulse: [L::zero(); 4],
-            inverse_masses: [[L::zero(); 2]; 2],
-            two_points: L::zero().lt(L::zero()),
-        };
-        self.two.finish(Constraint::prepare(&nothing));
-        self.one.finish(Constraint::prepare(&nothing));
+        self.colors.clear();
+        self.outdated = true;
     }
 
-    fn cut_substep_group(
+    /// Gives contacts that have come a colour and a lane.
+    pub fn arrange(
         &mut self,
-        coloring: &Coloring,
-        manifolds: &Manifolds<L::Elem>,
-        belongs: impl Fn(u32) -> bool,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        groups: &SubstepGroups<L::Elem>,
     ) {
-        let order = coloring.order();
-        let mut picked = std::mem::take(&mut self.picked);
-        for color in coloring.colors() {
-            let (two, one) = (self.two.len(), self.one.len());
-            let pick = |places: &[u32], picked: &mut Vec<u32>| {
-                picked.clear();
-                picked.extend(places.iter().copied().filter(|&place| belongs(place)));
-            };
-            pick(&order[color.two.clone()], &mut picked);
-            self.two.push(&picked, L::WIDTH, manifolds, &mut self.batch_of);
-            pick(&order[color.one.clone()], &mut picked);
-            self.one.push(&picked, L::WIDTH, manifolds, &mut self.batch_of);
-            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+        self.outdated = false;
+        let lists = groups.count() * LISTS;
+        if self.lists.len() < lists && !manifolds.is_empty() {
+            self.lists.resize_with(lists, List::default);
         }
-        for &place in order[coloring.overflow()].iter().filter(|&&place| belongs(place)) {
-            let (two, one) = (self.two.len(), self.one.len());
-            if manifolds.code(place as usize).points() == 2 {
-                self.two.push(&[place], 1, manifolds, &mut self.batch_of);
-            } else {
-                self.one.push(&[place], 1, manifolds, &mut self.batch_of);
+        let mut comers = std::mem::take(&mut self.picked);
+        comers.clear();
+        let homes = manifolds.homes();
+        comers.extend(manifolds.touching().iter().copied().filter(|&place| !homes[place as usize].is_some()));
+        for &place in &comers {
+            let slots = manifolds.slots(place as usize);
+            let color = self.colors.take(slots, bodies);
+            let list = groups.of_pair(slots) * LISTS + color;
+            let values = impulses_alone(manifolds.impulses()[place as usize]);
+            self.put(list, place, &values, manifolds);
+        }
+        self.picked = comers;
+        for number in 0..self.lists.len() {
+            self.join(number, manifolds);
+        }
+        self.order.clear();
+        self.group_ends.clear();
+        let mut base = [0; 2];
+        for (number, list) in self.lists.iter_mut().enumerate() {
+            list.base = base;
+            let batches = [list.two.len(), list.one.len()];
+            base = [base[0] + batches[0], base[1] + batches[1]];
+            if batches != [0; 2] {
+                self.order.push(number as u16);
             }
-            self.spans.push(Span { two: two..self.two.len(), one: one..self.one.len() });
+            if number % LISTS == COLORS {
+                self.group_ends.push(self.order.len());
+            }
         }
-        self.picked = picked;
+        self.active = 0..self.order.len();
+    }
+
+    /// Is there a contact without a colour?
+    pub fn overflows(&self) -> bool {
+        let mut overflows = self.lists.iter().skip(COLORS).step_by(LISTS);
+        overflows.any(|list| list.two.len() > 0)
+    }
+
+    /// Have contacts come or gone since [`Stream::arrange`]?
+    pub fn is_outdated(&self) -> bool {
+        self.outdated
     }
 
     /// Passes go over the contacts of one substep group from now on, or over all.
     pub fn choose(&mut self, substep_group: Option<usize>) {
+        let end = |group: usize| self.group_ends.get(group).copied().unwrap_or(self.order.len());
         self.active = match substep_group {
-            None => 0..self.spans.len(),
-            Some(0) => 0..self.substep_group_ends.first().copied().unwrap_or(0),
-            Some(substep_group) => {
-                self.substep_group_ends[substep_group - 1]..self.substep_group_ends[substep_group]
-            }
+            None => 0..self.order.len(),
+            Some(0) => 0..end(0),
+            Some(group) => end(group - 1)..end(group),
         };
     }
 
-    /// Notes that the manifold at a place was found anew.
+    /// Notes that the manifold of a contact was found anew.
     #[inline(always)]
-    pub fn touch(&mut self, place: u32) {
-        let home = self.batch_of[place as usize];
-        let stale = match home.points {
-            0 => return,
-            1 => &mut self.one.stale,
-            _ => &mut self.two.stale,
-        };
-        stale[home.batch as usize] |= 1 << home.lane;
+    pub fn touch(&mut self, home: Home) {
+        if home.is_some() {
+            self.lists[home.list as usize].touch(home);
+        }
     }
 
-    /// Prepares the batches whose manifolds are new; `inverse_masses` has rows 1/m, 1/I, –, – per slot.
-    pub fn begin(&mut self, manifolds: &Manifolds<L::Elem>, inverse_masses: &[[L::Elem; 4]]) {
-        self.two.prepare_stale(manifolds, inverse_masses);
-        self.one.prepare_stale(manifolds, inverse_masses);
+    /// Makes lanes of the manifolds found anew; `inverse_masses` has rows 1/m, 1/I, –, – per slot, `moved` the
+    /// displacements that gaps have yet to hear of: of those in the same batches they do now.
+    pub fn prepare(
+        &mut self,
+        manifolds: &Manifolds<L::Elem>,
+        inverse_masses: &[[L::Elem; 4]],
+        moved: Option<&[[L::Elem; 4]]>,
+    ) {
+        for &number in &self.order {
+            let list = &mut self.lists[number as usize];
+            list.two.prepare(manifolds, inverse_masses, moved);
+            list.one.prepare(manifolds, inverse_masses, moved);
+        }
     }
 
     /// One pass over the contacts chosen: colour by colour, two-point contacts first, the overflow last.
     #[inline(always)]
     pub fn visit(&mut self, visitor: &mut impl Visit<L>) {
-        for span in &self.spans[self.active.clone()] {
-            self.two.visit(span.two.clone(), visitor);
-            self.one.visit(span.one.clone(), visitor);
+        for &number in &self.order[self.active.clone()] {
+            let List { two, one, base, .. } = &mut self.lists[number as usize];
+            two.visit(visitor, base[0]);
+            one.visit(visitor, base[1]);
         }
-    }
-
-    /// Hands gaps and impulses of the batches with a touched place, or of all others, back to the pairs; `moved` has
-    /// the rows x, y, angle of the last substep's displacement per slot, by which the gaps still have to change;
-    /// `None` where they are up to date.
-    pub fn end_where(
-        &mut self,
-        touched: bool,
-        manifolds: &mut Manifolds<L::Elem>,
-        moved: Option<&[[L::Elem; 4]]>,
-    ) {
-        let store = &mut Store { manifolds, moved };
-        self.two.visit_where(touched, store);
-        self.one.visit_where(touched, store);
-    }
-
-    /// Reads all batches: `visitor` gets copies.
-    pub fn look(&self, visitor: &mut impl Visit<L>) {
-        self.two.look(visitor);
-        self.one.look(visitor);
     }
 
     /// From now on displacements are news to all constraints.
     pub fn age(&mut self) {
-        self.two.fresh.fill(false);
-        self.one.fresh.fill(false);
+        for &number in &self.order {
+            let list = &mut self.lists[number as usize];
+            list.two.age();
+            list.one.age();
+        }
+    }
+
+    /// Places of the pairs of each list, with whether it is the overflow.
+    pub fn places(&self) -> impl Iterator<Item = (bool, impl Iterator<Item = u32>)> {
+        self.order.iter().map(|&number| {
+            let list = &self.lists[number as usize];
+            let places = list.two.places().iter().chain(list.one.places()).copied();
+            (number as usize % LISTS == COLORS, places)
+        })
     }
 
     /// Batches of two-point and of one-point contacts.
     pub fn batches(&self) -> [usize; 2] {
-        [self.two.len(), self.one.len()]
+        let of = |count: fn(&List<L>) -> usize| {
+            self.order.iter().map(|&number| count(&self.lists[number as usize])).sum()
+        };
+        [of(|list| list.two.len()), of(|list| list.one.len())]
     }
 
     /// Bytes of constraint and slots a pass streams per two-point and one-point contact.
@@ -377,28 +287,20 @@ impl<L: Lanes> Stream<L> {
 
     /// Bytes of constraints and slots a pass streams.
     pub fn bytes(&self) -> usize {
-        let [two, one] = Self::bytes_per_contact();
-        (self.two.len() * two + self.one.len() * one) * L::WIDTH
+        let ([two, one], batches) = (Self::bytes_per_contact(), self.batches());
+        (batches[0] * two + batches[1] * one) * L::WIDTH
     }
 }
 
-struct Store<'a, R: Real> {
-    manifolds: &'a mut Manifolds<R>,
-    moved: Option<&'a [[R; 4]]>,
+/// Gaps hear of displacements.
+pub(crate) struct Follow<'a, R> {
+    pub moved: &'a [[R; 4]],
 }
 
-impl<L: Lanes> Visit<L> for Store<'_, L::Elem> {
+impl<L: Lanes> Visit<L> for Follow<'_, L::Elem> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
-        if let Some(moved) = self.moved {
-            c.follow(moved, &ends);
-        }
-        let of = |value: fn(&Point<L>) -> L| {
-            [value(&c.points[0]), if POINTS == 2 { value(&c.points[POINTS - 1]) } else { L::zero() }]
-        };
-        let ([s0, s1], [n0, n1]) = (of(|p| p.separation), of(Point::impulse));
-        L::scatter_fours([s0, s1, c.friction, c.restitution], self.manifolds.gaps_mut(), ends.place);
-        L::scatter_fours([n0, n1, c.tangent_impulse, L::zero()], self.manifolds.impulses_mut(), ends.place);
+        c.follow(self.moved, &ends);
     }
 }
 

@@ -24,9 +24,9 @@ mod goal;
 
 use std::ops::Range;
 
+use super::batches::{Ends, Visit};
 use super::constraint::Constraint;
 use super::slender_stack::{SlenderStacks, Touching};
-use super::stream::{Ends, Visit};
 use crate::body::{Bodies, BodyKind};
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
@@ -299,20 +299,10 @@ impl<R: Real> SubstepGroups<R> {
         }
     }
 
-    /// Scales the impulses of pairs whose substeps have changed.
-    pub fn scale_impulses(&self, bodies: &Bodies<R>, manifolds: &mut Manifolds<R>) {
-        for k in 0..manifolds.len() {
-            let at = manifolds.touching()[k] as usize;
-            let moves = |slot: &u32| bodies.kind(*slot as usize) == BodyKind::Dynamic;
-            let Some(slot) = manifolds.slots(at).into_iter().find(moves) else { continue };
-            let (before, now) = (self.before[slot as usize], self.of_slot[slot as usize]);
-            if before != now {
-                let scale = R::from_f64(f64::from(before) / f64::from(now));
-                for impulse in &mut manifolds.impulses_mut()[at][..3] {
-                    *impulse = *impulse * scale;
-                }
-            }
-        }
+    /// What impulses on a slot are to be multiplied by, where its substeps have changed.
+    pub fn scale(&self, slot: usize) -> Option<R> {
+        let (before, now) = (*self.before.get(slot)?, self.of_slot[slot]);
+        (before != now).then(|| R::from_f64(f64::from(before) / f64::from(now)))
     }
 }
 

@@ -19,11 +19,12 @@
 //! * **Impulses.** λ/(h·share) is what friction in [`Settle`] is bounded by, and what a report shows.
 
 use super::SolverContext;
+use super::batches::{Ends, Visit};
 use super::block::{cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::joint::Stiffness;
 use super::scheme::{ContactSolver, Pairs, Substep};
-use super::stream::{Ends, Stream, Visit};
+use super::stream::Stream;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes};
 

@@ -7,9 +7,8 @@
 //! | [`World::wake_touched`], when contacts are found | no contact that is solved has a sleeping end |
 //! | [`World::update_sleep`], as it ends | who has been quiet for long enough falls asleep |
 //!
-//! Constraints are handed back to the pairs before the runs change: gaps and impulses of what falls asleep stay
-//! there, and those of what wakes are taken from there. Such a step is never a still one, so that manifolds'
-//! constraints and the warm start are made anew.
+//! Contacts of what falls asleep are put down to their pairs' rows before the runs change, and taken up from there when it
+//! wakes. Such a step is never a still one, so that new constraints and the warm start are made.
 
 use super::World;
 use crate::body::{BodyError, BodyId};
@@ -42,11 +41,15 @@ impl<L: Lanes> World<L> {
         if !self.islands.take_changed() {
             return;
         }
-        self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+        self.solving.catch_up(&self.motion);
         let awake = self.islands.awake_beside_sleepers();
         match awake {
             None => self.motion.go_over_all(&self.bodies),
-            Some(awake) => self.motion.go_over_awake(&self.bodies, awake, self.islands.asleep()),
+            Some(awake) => {
+                let sleeps = |slots: [u32; 2]| !slots.iter().any(|&slot| awake[slot as usize]);
+                self.solving.put_down(&mut self.narrow.manifolds, &self.motion, sleeps);
+                self.motion.go_over_awake(&self.bodies, awake, self.islands.asleep());
+            }
         }
         self.broad.freeze(&self.bodies, awake);
         self.regrouped = true;
@@ -60,6 +63,7 @@ impl<L: Lanes> World<L> {
         }
         let awake = self.islands.awake_beside_sleepers();
         self.narrow.manifolds.regroup(awake);
+        self.solving.rename(&mut self.narrow.manifolds, &self.motion);
     }
 
     /// Wakes what is touched by what is awake, so that no contact of a step has a sleeping end.
@@ -91,7 +95,8 @@ impl<L: Lanes> World<L> {
     pub(super) fn wake_what_rested_on(&mut self, slot: usize) {
         self.islands.wake_around(slot, &self.narrow.manifolds);
         // Only its own pairs: what others that sleep rest on has to be known until they wake.
-        self.solving.hand_back(&mut self.narrow.manifolds, &self.motion);
+        let is_its = |slots: [u32; 2]| slots.contains(&(slot as u32));
+        self.solving.put_down(&mut self.narrow.manifolds, &self.motion, is_its);
         self.narrow.manifolds.forget_slot(slot);
         if let Some((_, removals)) = &mut self.inspected {
             *removals += 1;

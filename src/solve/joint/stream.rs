@@ -13,10 +13,17 @@ use crate::joint::{Held, Joint, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::solve::color::COLORS;
 use crate::solve::constraint::Side;
-use crate::solve::stream::Ends;
 
 /// In no place: padding lanes.
 const NOWHERE: u32 = u32::MAX;
+
+/// Whom a batch's lanes join: `WIDTH` entries each count; see [`Ends`](crate::solve::batches::Ends).
+#[derive(Clone, Copy)]
+struct Joined<'a> {
+    place: &'a [u32],
+    a: &'a [u32; 16],
+    b: &'a [u32; 16],
+}
 
 /// Batches of one shape.
 #[derive(Clone, Debug)]
@@ -58,13 +65,13 @@ impl<C> Batches<C> {
     }
 
     #[inline(always)]
-    fn each<L: Lanes>(&mut self, batches: Range<usize>, mut pass: impl FnMut(&mut C, Ends<'_>)) {
+    fn each<L: Lanes>(&mut self, batches: Range<usize>, mut pass: impl FnMut(&mut C, Joined<'_>)) {
         for at in batches {
             let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
             let (mut a, mut b) = ([0; MOST], [0; MOST]);
             a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
             b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            pass(&mut self.links[at], Ends { place: &self.place[lanes], a: &a, b: &b, fresh: false });
+            pass(&mut self.links[at], Joined { place: &self.place[lanes], a: &a, b: &b });
         }
     }
 
@@ -349,7 +356,7 @@ impl<L: Lanes> JointStream<L> {
 #[inline(always)]
 fn with_sides<L: Lanes>(
     rows: &mut [[L::Elem; 4]],
-    ends: &Ends<'_>,
+    ends: &Joined<'_>,
     change: impl FnOnce(&mut Side<L>, &mut Side<L>),
 ) {
     let (mut a, mut b) = (Side::gather(rows, ends.a), Side::gather(rows, ends.b));

@@ -1,12 +1,12 @@
 //! What a step ends with: bounces, and what was deep in something else moved out of it.
 
-use super::{Follow, Latest, Solving};
+use super::{Follow, Solving};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::motion::Motion;
 use crate::settings::Solver;
-use crate::solve::bounce::{self, MoveOut};
+use crate::solve::bounce::{self, Bouncing, MoveOut};
 use crate::solve::{SolverContext, deep, soft};
 
 impl<L: Lanes> Solving<L> {
@@ -19,22 +19,16 @@ impl<L: Lanes> Solving<L> {
     ) {
         let settled =
             self.substep_groups.count() > 1 || matches!(context.solver, Solver::Xpbd | Solver::Avbd);
-        if self.bouncing {
-            self.follow_pairs(context, manifolds, motion);
-            if self.bounce(context, motion, settled) && context.solver == Solver::Avbd {
-                self.stream.end_where(false, manifolds, None);
+        if self.bouncing.any {
+            self.take_rows(manifolds, motion);
+            if self.bounce(context, motion, settled) && self.in_rows {
+                self.stream.write_rows(manifolds, None);
             }
         }
         if self.deep.steps > 0 && context.solver == Solver::Soft {
             self.deep.steps = if self.part_deep(context, motion, settled) { self.deep.steps - 1 } else { 0 };
         }
-        self.latest = if context.solver == Solver::Avbd {
-            Latest::InPairs
-        } else if settled {
-            Latest::InConstraints
-        } else {
-            Latest::BeforeDisplacements
-        };
+        self.behind = !settled;
     }
 
     /// Gives bounces their impulses and displacements; says whether there were any.
@@ -44,7 +38,7 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
         settled: bool,
     ) -> bool {
-        let Self { displaced, stream, bounces, .. } = self;
+        let Self { bouncing: Bouncing { displaced, bounces, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours());
         // Left as zeros by what was displaced before.
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
@@ -68,7 +62,7 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
         settled: bool,
     ) -> bool {
-        let Self { displaced, stream, .. } = self;
+        let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours(), motion.moved.fours());
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
         let [deep, most] = [deep::DEEP, soft::PUSH_CAP].each(|share| L::lit(share * context.needs.length));
@@ -85,7 +79,7 @@ impl<L: Lanes> Solving<L> {
 
     /// Adds what was displaced to the step's displacements, and leaves zeros.
     fn displace(&mut self, motion: &mut Motion<L::Elem>, settled: bool) {
-        let Self { displaced, stream, .. } = self;
+        let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
         if settled {
             stream.visit(&mut Follow { moved: displaced });
         }
@@ -97,18 +91,11 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
-    /// `avbd` works on the pairs: bounces are noted and given by constraints, which follow.
-    pub(super) fn follow_pairs(
-        &mut self,
-        context: &SolverContext<'_, L::Elem>,
-        manifolds: &Manifolds<L::Elem>,
-        motion: &Motion<L::Elem>,
-    ) {
-        if context.solver == Solver::Avbd {
-            for &place in manifolds.touching() {
-                self.stream.touch(place);
-            }
-            self.stream.begin(manifolds, motion.inverse_masses.fours());
+    /// Where the solver works on the pairs: constraints, which note bounces and give them, are made of their rows.
+    pub(super) fn take_rows(&mut self, manifolds: &Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
+        if self.in_rows {
+            self.stream.take_rows(manifolds);
+            self.stream.prepare(manifolds, motion.inverse_masses.fours(), None);
         }
     }
 }

@@ -1,0 +1,270 @@
+//! Contacts of one colour as constraints in batches of lanes: what passes visit.
+//!
+//! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
+//! changes a row and every loop over lanes is of fixed length. Only the last batch has some: what leaves gives its lane to
+//! the last.
+
+use super::constraint::{Constraint, LANE_VALUES, LaneValues, Parts};
+use crate::contact::Manifolds;
+use crate::each::Each as _;
+use crate::lanes::{Lanes, Real};
+
+/// What a pass does to one batch; `POINTS` is 1 or 2.
+pub trait Visit<L: Lanes> {
+    /// The places of the pairs, and slots of bodies A and B, `WIDTH` each; `at` counts batches of as many points.
+    fn visit<const POINTS: usize>(
+        &mut self,
+        constraint: &mut Constraint<L, POINTS>,
+        ends: Ends<'_>,
+        at: usize,
+    );
+}
+
+/// Whom a batch's lanes join: `WIDTH` entries each count. Slots are held by value: a scatter then needs no
+/// second check of what the gather has checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends<'a> {
+    /// Slots of bodies A.
+    pub a: &'a [u32; 16],
+    /// Slots of bodies B.
+    pub b: &'a [u32; 16],
+    /// The gaps already know the displacements that others have yet to follow.
+    pub fresh: bool,
+}
+
+/// Batches of contacts solved with the same number of points.
+#[derive(Clone, Debug)]
+pub(super) struct Batches<L, const POINTS: usize> {
+    constraints: Vec<Constraint<L, POINTS>>,
+    /// The pair of each lane; `WIDTH` entries per batch, as are `a` and `b`.
+    place: Vec<u32>,
+    a: Vec<u32>,
+    b: Vec<u32>,
+    /// Which lanes' manifolds were found anew.
+    stale: Vec<u32>,
+    /// Batches prepared in this step.
+    fresh: Vec<bool>,
+    /// Lanes in use; all but the last batch are full.
+    used: usize,
+}
+
+impl<L, const POINTS: usize> Default for Batches<L, POINTS> {
+    fn default() -> Self {
+        Self {
+            constraints: Vec::new(),
+            place: Vec::new(),
+            a: Vec::new(),
+            b: Vec::new(),
+            stale: Vec::new(),
+            fresh: Vec::new(),
+            used: 0,
+        }
+    }
+}
+
+impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
+    pub(super) fn clear(&mut self) {
+        self.used = 0;
+        self.cut();
+    }
+
+    /// Drops batches without a lane in use.
+    fn cut(&mut self) {
+        let batches = self.used.div_ceil(L::WIDTH);
+        self.constraints.truncate(batches);
+        self.stale.truncate(batches);
+        self.fresh.truncate(batches);
+        for list in [&mut self.place, &mut self.a, &mut self.b] {
+            list.truncate(batches * L::WIDTH);
+        }
+    }
+
+    /// Batches.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.constraints.len()
+    }
+
+    /// Contacts.
+    pub(super) fn used(&self) -> usize {
+        self.used
+    }
+
+    /// The pairs of lanes in use.
+    pub(super) fn places(&self) -> &[u32] {
+        &self.place[..self.used]
+    }
+
+    /// Slots of bodies A and B of a lane.
+    pub(super) fn slots(&self, lane: u32) -> [u32; 2] {
+        [self.a[lane as usize], self.b[lane as usize]]
+    }
+
+    /// Appends a contact; returns its lane. With `alone` no other shares its batch.
+    pub(super) fn push(
+        &mut self,
+        (place, [a, b]): (u32, [u32; 2]),
+        values: &LaneValues<L::Elem>,
+        padding: u32,
+        alone: bool,
+    ) -> u32 {
+        if alone {
+            self.used = self.len() * L::WIDTH;
+        }
+        let lane = self.used;
+        if lane == self.len() * L::WIDTH {
+            self.constraints.push(Constraint::nothing());
+            self.stale.push(0);
+            self.fresh.push(false);
+            let lanes = self.len() * L::WIDTH;
+            self.place.resize(lanes, padding);
+            self.a.resize(lanes, 0);
+            self.b.resize(lanes, 0);
+        }
+        (self.place[lane], self.a[lane], self.b[lane]) = (place, a, b);
+        self.constraints[lane / L::WIDTH].set_lane(lane % L::WIDTH, values);
+        self.used += 1;
+        lane as u32
+    }
+
+    /// Takes a contact out. The last lane moves to its place: returns the pair that has moved.
+    pub(super) fn remove(&mut self, lane: u32, padding: u32) -> Option<u32> {
+        let (lane, last) = (lane as usize, self.used - 1);
+        let nothing = [L::Elem::ZERO; LANE_VALUES];
+        let moved = (lane != last).then(|| {
+            let values = self.lane(last as u32);
+            self.constraints[lane / L::WIDTH].set_lane(lane % L::WIDTH, &values);
+            for list in [&mut self.place, &mut self.a, &mut self.b] {
+                list[lane] = list[last];
+            }
+            let stale = self.stale[last / L::WIDTH] >> (last % L::WIDTH) & 1;
+            let bits = &mut self.stale[lane / L::WIDTH];
+            *bits = *bits & !(1 << (lane % L::WIDTH)) | stale << (lane % L::WIDTH);
+            self.place[lane]
+        });
+        self.constraints[last / L::WIDTH].set_lane(last % L::WIDTH, &nothing);
+        self.stale[last / L::WIDTH] &= !(1 << (last % L::WIDTH));
+        (self.place[last], self.a[last], self.b[last]) = (padding, 0, 0);
+        self.used = last;
+        self.cut();
+        moved
+    }
+
+    /// What a lane holds.
+    pub(super) fn lane(&self, lane: u32) -> LaneValues<L::Elem> {
+        self.constraints[lane as usize / L::WIDTH].lane(lane as usize % L::WIDTH)
+    }
+
+    /// Changes what a lane holds.
+    pub(super) fn set_lane(&mut self, lane: u32, values: &LaneValues<L::Elem>) {
+        self.constraints[lane as usize / L::WIDTH].set_lane(lane as usize % L::WIDTH, values);
+    }
+
+    /// Have a lane's gaps heard of the last displacements, because it was prepared after them?
+    pub(super) fn is_fresh(&self, lane: u32) -> bool {
+        self.fresh[lane as usize / L::WIDTH]
+    }
+
+    /// Was a lane's manifold found anew since it was prepared?
+    pub(super) fn is_stale(&self, lane: u32) -> bool {
+        self.stale[lane as usize / L::WIDTH] >> (lane as usize % L::WIDTH) & 1 == 1
+    }
+
+    /// Notes that a lane's manifold was found anew.
+    #[inline(always)]
+    pub(super) fn touch(&mut self, lane: u32) {
+        self.stale[lane as usize / L::WIDTH] |= 1 << (lane as usize % L::WIDTH);
+    }
+
+    /// A lane's pair has another place.
+    pub(super) fn rename(&mut self, lane: u32, place: u32) {
+        self.place[lane as usize] = place;
+    }
+
+    /// The place that is no pair is another.
+    pub(super) fn rename_padding(&mut self, padding: u32) {
+        self.place[self.used..].fill(padding);
+    }
+
+    /// From now on displacements are news to all constraints.
+    pub(super) fn age(&mut self) {
+        self.fresh.fill(false);
+    }
+
+    #[inline(always)]
+    pub(super) fn visit(&mut self, visitor: &mut impl Visit<L>, base: usize) {
+        for at in 0..self.len() {
+            let (a, b) = ends_of::<L>([&self.a, &self.b], at);
+            let ends = Ends { a: &a, b: &b, fresh: self.fresh[at] };
+            visitor.visit(&mut self.constraints[at], ends, base + at);
+        }
+    }
+
+    /// Prepares the lanes whose manifolds are new. What else is in their batches hears of `moved`, where it has not.
+    pub(super) fn prepare(
+        &mut self,
+        manifolds: &Manifolds<L::Elem>,
+        inverse_masses: &[[L::Elem; 4]],
+        moved: Option<&[[L::Elem; 4]]>,
+    ) {
+        for at in 0..self.len() {
+            let stale = std::mem::take(&mut self.stale[at]);
+            if stale == 0 {
+                continue;
+            }
+            let (a, b) = ends_of::<L>([&self.a, &self.b], at);
+            let places = &self.place[at * L::WIDTH..(at + 1) * L::WIDTH];
+            let constraint = &mut self.constraints[at];
+            let parts = parts::<L, POINTS>(constraint, manifolds, inverse_masses, places, [&a, &b]);
+            let lanes = L::WIDTH.min(self.used - at * L::WIDTH);
+            if stale.count_ones() as usize == lanes {
+                *constraint = Constraint::prepare(&parts);
+            } else {
+                if let Some(moved) = moved {
+                    constraint.follow(moved, &Ends { a: &a, b: &b, fresh: self.fresh[at] });
+                }
+                constraint.take_lanes(&Constraint::prepare(&parts), stale);
+            }
+            self.fresh[at] = true;
+        }
+    }
+}
+
+/// Slots of one batch. A function of its own for no array but this: handed out with the rest of [`Ends`] it cost 6 % of a pass.
+#[inline(always)]
+fn ends_of<L: Lanes>([of_a, of_b]: [&[u32]; 2], at: usize) -> ([u32; 16], [u32; 16]) {
+    let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+    let (mut a, mut b) = ([0; 16], [0; 16]);
+    a[..L::WIDTH].copy_from_slice(&of_a[lanes.clone()]);
+    b[..L::WIDTH].copy_from_slice(&of_b[lanes]);
+    (a, b)
+}
+
+/// What a batch is prepared from: manifolds as found, masses, and the impulses it holds.
+#[inline(always)]
+fn parts<L: Lanes, const POINTS: usize>(
+    held: &Constraint<L, POINTS>,
+    manifolds: &Manifolds<L::Elem>,
+    inverse_masses: &[[L::Elem; 4]],
+    places: &[u32],
+    slots: [&[u32; 16]; 2],
+) -> Parts<L> {
+    let mut two_points = [L::Elem::ZERO; 16];
+    if POINTS == 2 {
+        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(places) {
+            *two = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
+        }
+    }
+    let masses = |slots: &[u32; 16]| {
+        let [inv_mass, inv_inertia, ..] = L::gather_fours(inverse_masses, slots);
+        [inv_mass, inv_inertia]
+    };
+    let second = if POINTS == 2 { held.points[POINTS - 1].impulse() } else { L::zero() };
+    Parts {
+        geometry: L::gather_rows(manifolds.geometry(), places),
+        gap: L::gather_fours(manifolds.gaps(), places),
+        impulses: [held.points[0].impulse(), second, held.tangent_impulse],
+        inverse_masses: slots.each(masses),
+        two_points: L::zero().lt(L::load(&two_points)),
+    }
+}
