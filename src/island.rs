@@ -95,8 +95,8 @@ pub struct Islands<R: Real> {
     pushed: bool,
     /// All times are 0.
     fresh: bool,
-    /// Who is awake has changed since [`Islands::take_changed`].
-    changed: bool,
+    /// How often who is awake has changed.
+    changes: u64,
 }
 
 impl<R: Real> Default for Islands<R> {
@@ -117,7 +117,7 @@ impl<R: Real> Default for Islands<R> {
             rings: 0,
             pushed: false,
             fresh: true,
-            changed: false,
+            changes: 0,
         }
     }
 }
@@ -151,9 +151,9 @@ impl<R: Real> Islands<R> {
     pub fn is_asleep(&self, slot: usize) -> bool {
         self.asleep.get(slot).is_some_and(|&asleep| asleep)
     }
-    /// Says, once, that somebody fell asleep, woke or came.
-    pub fn take_changed(&mut self) -> bool {
-        std::mem::take(&mut self.changed)
+    /// How often who is awake has changed.
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// Takes in which bodies there are, and `links` between their slots: pairs that are one island though they
@@ -175,7 +175,8 @@ impl<R: Real> Islands<R> {
                 self.kinematic.push(slot as u32);
             }
         }
-        (self.pushed, self.changed) = (true, true);
+        self.pushed = true;
+        self.changes += 1;
         std::mem::swap(&mut self.links, &mut self.last_links);
         self.links.clear();
         self.links.extend(links);
@@ -202,7 +203,7 @@ impl<R: Real> Islands<R> {
                 let at = slot as usize;
                 let moves = !is_at_rest(bodies, at);
                 self.moving_kinematic += usize::from(moves);
-                self.changed |= std::mem::replace(&mut self.awake[at], moves) != moves;
+                self.changes += u64::from(std::mem::replace(&mut self.awake[at], moves) != moves);
             }
         }
         self.sleeping > 0 && self.sleeping == self.dynamic && self.moving_kinematic == 0
@@ -227,7 +228,7 @@ impl<R: Real> Islands<R> {
             }
         }
         self.rings -= 1;
-        self.changed = true;
+        self.changes += 1;
     }
 
     /// Wakes all, whatever may have been done to them.
@@ -385,7 +386,7 @@ impl<R: Real> Islands<R> {
             column[slot] = R::ZERO;
         }
         self.sleeping += 1;
-        self.changed = true;
+        self.changes += 1;
     }
 }
 

@@ -3,6 +3,7 @@
 mod access;
 mod error;
 mod inspect;
+mod made_from;
 mod sleep;
 mod snapshot;
 mod watchdog;
@@ -23,6 +24,7 @@ use crate::settings::{Precision, Settings, Skip};
 use crate::solve::substep_group::Goal;
 use crate::solve::{self, SceneNeeds, SolverContext, Solving};
 
+use made_from::MadeFrom;
 use watchdog::Watchdog;
 
 pub use error::{StepError, WorldError};
@@ -40,42 +42,44 @@ struct Seen {
     changed: bool,
 }
 
-/// Bodies, joints, fields, and the memory a step works in.
+/// What acts on bodies.
 #[derive(Clone, Debug)]
-pub struct World<L: Lanes> {
-    bodies: Bodies<L::Elem>,
-    joints: Joints<L::Elem>,
+struct Laws<R: Real> {
     forces: Forces,
-    settings: Settings,
-    fields: Vec<Field<L::Elem>>,
+    /// The same, as integrators take them.
+    fields: Vec<Field<R>>,
     needs: SceneNeeds,
-    /// Revision and removals of the bodies last looked over.
-    inspected: Option<(u64, u64)>,
-    /// Revision of the joints last looked over.
-    inspected_joints: u64,
-    broad: BroadPhase<L::Elem>,
-    narrow: Narrow<L::Elem>,
-    solving: Solving<L>,
-    motion: Motion<L::Elem>,
-    continuous: Continuous<L::Elem>,
-    /// Poses may have changed by other hands than a step's: no manifold may be reused.
-    disturbed: bool,
-    /// The broad phase has a list the narrow phase has not taken yet.
-    pairs_outdated: bool,
-    /// Who sleeps; left alone without [`Settings::sleep`].
-    islands: Islands<L::Elem>,
-    /// Who is awake has changed since pairs were last sorted by it.
-    regrouped: bool,
-    /// How often it has.
-    groupings: u64,
     /// How often other fields were set.
-    fields_set: u64,
-    watchdog: Watchdog,
+    revision: u64,
+}
+
+/// What a world has gone through.
+#[derive(Clone, Debug, Default)]
+struct Log {
     steps: u64,
     /// Since the world began, seconds.
     time_secs: f64,
     counts: Counts,
     stopwatch: Stopwatch,
+    watchdog: Watchdog,
+}
+
+/// Bodies, joints, fields, and the memory a step works in.
+#[derive(Clone, Debug)]
+pub struct World<L: Lanes> {
+    bodies: Bodies<L::Elem>,
+    joints: Joints<L::Elem>,
+    settings: Settings,
+    laws: Laws<L::Elem>,
+    broad: BroadPhase<L::Elem>,
+    narrow: Narrow<L::Elem>,
+    solving: Solving<L>,
+    motion: Motion<L::Elem>,
+    continuous: Continuous<L::Elem>,
+    /// Who sleeps; left alone without [`Settings::sleep`].
+    islands: Islands<L::Elem>,
+    made: MadeFrom,
+    log: Log,
 }
 
 impl<L: Lanes> World<L> {
@@ -117,31 +121,20 @@ impl<L: Lanes> World<L> {
         forces.check_coupling(bodies.len(), &settings).map_err(SceneError::from)?;
         let mut bodies = bodies;
         bodies.set_fine(settings.is_fine());
+        let laws = Laws { forces, fields: Vec::new(), needs: SceneNeeds::default(), revision: 0 };
         Ok(Self {
             bodies,
             joints,
-            forces,
             settings,
-            fields: Vec::new(),
-            needs: SceneNeeds::default(),
-            inspected: None,
-            inspected_joints: 0,
+            laws,
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
             solving: Solving::default(),
             motion: Motion::default(),
             continuous: Continuous::default(),
-            disturbed: true,
-            pairs_outdated: true,
             islands: Islands::default(),
-            regrouped: false,
-            groupings: 0,
-            fields_set: 0,
-            watchdog: Watchdog::default(),
-            steps: 0,
-            time_secs: 0.0,
-            counts: Counts::default(),
-            stopwatch: Stopwatch::default(),
+            made: MadeFrom::default(),
+            log: Log::default(),
         })
     }
 
@@ -180,18 +173,18 @@ impl<L: Lanes> World<L> {
         self.inspect();
         self.begin_watch();
         self.bodies.drive(dt_secs);
-        self.steps += 1;
-        let begun_secs = self.time_secs;
-        self.time_secs += dt_secs;
+        self.log.steps += 1;
+        let begun_secs = self.log.time_secs;
+        self.log.time_secs += dt_secs;
         if self.settings.sleep && self.rests() {
-            self.stopwatch.count(self.bodies.live());
+            self.log.stopwatch.count(self.bodies.live());
             return Ok(());
         }
-        self.stopwatch.begin(self.bodies.live());
+        self.log.stopwatch.begin(self.bodies.live());
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
-        let needs = self.needs.needed(skips);
+        let needs = self.laws.needs.needed(skips);
 
-        let mut fields = std::mem::take(&mut self.fields);
+        let mut fields = std::mem::take(&mut self.laws.fields);
         for field in &mut fields {
             field.begin(begun_secs);
         }
@@ -207,13 +200,13 @@ impl<L: Lanes> World<L> {
         };
         let stiffness = self.settings.contact_stiffness();
         let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
-        let goal = Goal::of(&context, &self.settings, &self.forces);
+        let goal = Goal::of(&context, &self.settings, &self.laws.forces);
         let goal = goal.map(|goal| (goal, self.solving.look(&goal, &self.bodies, &self.joints)));
         let seen = self.find_contacts(needs, rounded);
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
         let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let (mut skipped, finite) = if free_flight {
-            self.disturbed = true;
+            self.made.forget_poses();
             self.motion.assume_fast_bodies();
             let fast = self.continuous.begin(self.settings.continuous);
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
@@ -223,24 +216,24 @@ impl<L: Lanes> World<L> {
             integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, context.speeds());
             moved
         };
-        self.fields = fields;
+        self.laws.fields = fields;
         let (skin_m, margin) = (needs.touch(), needs.margin(solver));
         let (apart, has_moved) = (self.broad.kept_apart(), &mut self.motion.has_moved);
         self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, apart, has_moved);
-        self.stopwatch.lap(Stage::Integrate);
+        self.log.stopwatch.lap(Stage::Integrate);
 
         let manifolds = &self.narrow.manifolds;
         skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
-        self.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
+        self.log.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
         let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
-        self.counts.direct_joints = self.solving.direct_joints();
-        self.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
+        self.log.counts.direct_joints = self.solving.direct_joints();
+        self.log.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
         self.check_finite(finite)?;
         self.watch(free_flight)?;
         if self.settings.sleep {
             self.update_sleep(dt_secs, seen.changed);
         }
-        self.stopwatch.lap(Stage::Measure);
+        self.log.stopwatch.lap(Stage::Measure);
         Ok(())
     }
 
@@ -250,22 +243,21 @@ impl<L: Lanes> World<L> {
         let margin = needs.margin(solver);
         let reach = margin + self.bodies.grain();
         let keep = skips.has(Skip::PairList);
-        let ahead_secs = if self.motion.needs_speculative_margin && margin > L::Elem::ZERO {
+        let ahead_secs = if self.motion.outlook.needs_speculative_margin && margin > L::Elem::ZERO {
             dt_secs
         } else {
             L::Elem::ZERO
         };
         let found = self.broad.find::<L>(&self.bodies, broad, reach, ahead_secs, keep);
-        self.stopwatch.lap(Stage::Broad);
+        self.log.stopwatch.lap(Stage::Broad);
 
-        let reuse = !std::mem::take(&mut self.disturbed) && skips.has(Skip::ManifoldReuse);
-        // A new list can wait until something moves: what was too far apart for a contact still is.
-        self.pairs_outdated |= !found.kept;
-        let still = reuse && !self.motion.any_has_moved && !self.regrouped;
+        let reuse = self.made.poses_are_its_own() && skips.has(Skip::ManifoldReuse);
+        let still = reuse && !self.motion.outlook.any_has_moved && self.made.is_sorted();
         let mut seen = Seen { found, still, looked_at: 0, changed: false };
         if !still {
             self.regroup();
-            if std::mem::take(&mut self.pairs_outdated) {
+            // A new list can wait until something moves: what was too far apart for a contact still is.
+            if self.made.take_list(self.broad.lists()) {
                 self.narrow.rebuild(&self.bodies, self.broad.pairs());
                 self.solving.rename(&mut self.narrow.manifolds, &self.motion);
             }
@@ -282,7 +274,7 @@ impl<L: Lanes> World<L> {
                 self.wake_touched();
             }
         }
-        self.stopwatch.lap(Stage::Narrow);
+        self.log.stopwatch.lap(Stage::Narrow);
         seen
     }
 
@@ -302,9 +294,9 @@ impl<L: Lanes> World<L> {
             solving.note_depth(|| self.narrow.deepest(), context.needs.length);
         }
         let awake = self.islands.awake_beside_sleepers();
-        solving.prepare_joints(context, bodies, &self.joints, (awake, self.groupings));
+        solving.prepare_joints(context, bodies, &self.joints, (awake, self.made.awake()));
         let warm = solving.begin(context, bodies, &self.narrow.manifolds, motion);
-        self.stopwatch.lap(Stage::Prepare);
+        self.log.stopwatch.lap(Stage::Prepare);
         let (mut skipped, mut finite) = (Skipped::default(), true);
         for substep_group in 0..self.solving.substep_groups().count() {
             if finite {
@@ -316,7 +308,7 @@ impl<L: Lanes> World<L> {
         let (motion, solving) = (&mut self.motion, &mut self.solving);
         solving.end(context, &mut self.narrow.manifolds, motion);
         solving.end_joints(&mut self.joints);
-        self.stopwatch.lap(Stage::Solve);
+        self.log.stopwatch.lap(Stage::Solve);
         (skipped, finite)
     }
 
@@ -336,17 +328,17 @@ impl<L: Lanes> World<L> {
             let plan = Plan { since_secs: plan.h_secs * f64::from(substep), ..plan };
             skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
             warm = Warm::Onward;
-            self.stopwatch.lap(Stage::Integrate);
+            self.log.stopwatch.lap(Stage::Integrate);
             solving.solve(context, motion, substep == 0);
-            self.stopwatch.lap(Stage::Solve);
+            self.log.stopwatch.lap(Stage::Solve);
             let finite = integrate::advance::<L>(&plan, motion);
-            self.stopwatch.lap(Stage::Integrate);
+            self.log.stopwatch.lap(Stage::Integrate);
             if !finite {
                 // The next round's prediction would hide whether the solver began it.
                 return (skipped, false);
             }
             solving.settle(context, bodies, &mut self.narrow.manifolds, motion);
-            self.stopwatch.lap(Stage::Solve);
+            self.log.stopwatch.lap(Stage::Solve);
         }
         (skipped, true)
     }
@@ -356,7 +348,7 @@ impl<L: Lanes> World<L> {
         let found = first_non_finite::<L>(&self.bodies, &self.motion.runs);
         let Some((slot, column, value)) = found else { return Ok(()) };
         let stopped = |slot, column, value, stage| {
-            Err(StepError::NonFinite { step: self.steps, slot, column, value, stage })
+            Err(StepError::NonFinite { step: self.log.steps, slot, column, value, stage })
         };
         if rounds_finite {
             // Poses overflow where they are added up, or by what a solver moved bodies apart by.

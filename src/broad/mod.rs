@@ -120,6 +120,8 @@ pub struct BroadPhase<R: Real> {
     keep: keep::Keep<R>,
     frozen: frozen::Frozen<R>,
     kept: BroadCounts,
+    /// Lists found so far.
+    lists: u64,
     revision: Option<u64>,
     /// Pairs that may not collide for other reasons than their categories, ordered like `pairs`.
     apart: Vec<[u32; 2]>,
@@ -138,6 +140,7 @@ impl<R: Real> Default for BroadPhase<R> {
             keep: keep::Keep::default(),
             frozen: frozen::Frozen::default(),
             kept: BroadCounts::default(),
+            lists: 0,
             revision: None,
             apart: Vec::new(),
         }
@@ -148,6 +151,11 @@ impl<R: Real> BroadPhase<R> {
     /// The pairs of the last [`BroadPhase::find`]: slots a < b, ordered by a, then b.
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.pairs
+    }
+
+    /// How many lists have been found: which one [`BroadPhase::pairs`] is.
+    pub fn lists(&self) -> u64 {
+        self.lists
     }
 
     /// The method `auto` stands for with this many bodies.
@@ -217,6 +225,7 @@ impl<R: Real> BroadPhase<R> {
         let awake = some_sleep.then_some(self.frozen.awake_slots());
         self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
         self.find_afresh::<L>(bodies, method);
+        self.lists += 1;
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
         self.keep.begin(bodies, self.long.slots(), skin);

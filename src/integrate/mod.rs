@@ -275,9 +275,9 @@ fn predict_with<L: Lanes, S: Scheme>(
         let mut begun = Begun::default();
         begun.read(plan.carries, bodies, motion, start, from);
         let Begun { inv_mass, state, warm, total } = &mut begun;
-        let chosen = motion.substep_group.map(|substep_group| -> [Chosen<L>; BLOCK] {
+        let chosen = motion.group.current.map(|substep_group| -> [Chosen<L>; BLOCK] {
             crate::each::indexed(|i| {
-                Chosen::new(&motion.substep_groups, substep_group, start + i, inv_mass[i])
+                Chosen::new(&motion.group.of_slot, substep_group, start + i, inv_mass[i])
             })
         });
         for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
@@ -342,8 +342,8 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
             // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
             doubtful = doubtful + moved[k] * L::zero();
         }
-        if let Some(substep_group) = motion.substep_group {
-            let chosen = Chosen::<L>::new(&motion.substep_groups, substep_group, at, row[3]);
+        if let Some(substep_group) = motion.group.current {
+            let chosen = Chosen::<L>::new(&motion.group.of_slot, substep_group, at, row[3]);
             let old = load_four::<L>(&motion.moved, at);
             velocity = crate::each::indexed(|k| L::select(chosen.moves, velocity[k], row[k]));
             moved = crate::each::indexed(|k| L::select(chosen.moves, moved[k], old[k]));
@@ -358,7 +358,7 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
 /// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
 /// have gone further than [`CONTACT_REUSE_DISTANCE`] of their radius since they last did are noted as having moved, fast ones in `fast`.
 /// `speeds`, m/s, that no two bodies' points reach together while no body's reaches half of them: those of
-/// [`Motion::needs_speculative_margin`] and [`Motion::may_bounce`].
+/// [`Outlook`](crate::motion::Outlook).
 pub(crate) fn finish<L: Lanes>(
     bodies: &mut Bodies<L::Elem>,
     motion: &mut Motion<L::Elem>,
@@ -413,8 +413,9 @@ pub(crate) fn finish<L: Lanes>(
         turn_block(bodies, start..end, &angle);
     }
     motion.runs = runs;
-    motion.any_has_moved = any_has_moved != 0;
-    (motion.needs_speculative_margin, motion.may_bounce) = (any_speculative != 0, any_bouncing != 0);
+    motion.outlook.any_has_moved = any_has_moved != 0;
+    (motion.outlook.needs_speculative_margin, motion.outlook.may_bounce) =
+        (any_speculative != 0, any_bouncing != 0);
 }
 
 #[inline(always)]

@@ -65,18 +65,32 @@ pub struct Motion<R: Real> {
     pub(crate) drift: Column<R>,
     /// Slots of bodies whose manifolds are to be found anew.
     pub has_moved: Vec<bool>,
-    /// Is there one?
+    /// What the next step has to expect.
+    pub outlook: Outlook,
+    /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
+    pub runs: Vec<Range<usize>>,
+    /// Which substep group moves now.
+    pub group: Group<R>,
+}
+
+/// What the speeds and paths of a step say of the next.
+#[derive(Clone, Copy, Debug)]
+pub struct Outlook {
+    /// Is there a body whose manifolds are to be found anew?
     pub any_has_moved: bool,
     /// May two bodies close more than the gap that contacts are found within?
     pub needs_speculative_margin: bool,
     /// May two bodies meet fast enough to bounce?
     pub may_bounce: bool,
-    /// The slots a step goes over: from multiples of [`PAD`] on, ascending. In the others nothing moves.
-    pub runs: Vec<Range<usize>>,
-    /// Which substep group each slot has, and the one whose bodies move now; all do where it is `None`.
-    pub substep_groups: Column<R>,
-    /// See `substep_groups`.
-    pub substep_group: Option<R>,
+}
+
+/// The substep group whose bodies move.
+#[derive(Clone, Debug)]
+pub struct Group<R: Real> {
+    /// Which group each slot has.
+    pub of_slot: Column<R>,
+    /// The one; all bodies move where it is `None`.
+    pub current: Option<R>,
 }
 
 /// Where a step's warm start is found before its first substep.
@@ -105,12 +119,9 @@ impl<R: Real> Default for Motion<R> {
             acceleration: zeros(),
             drift: zeros(),
             has_moved: Vec::new(),
-            any_has_moved: true,
-            needs_speculative_margin: true,
-            may_bounce: true,
+            outlook: Outlook { any_has_moved: true, needs_speculative_margin: true, may_bounce: true },
             runs: Vec::new(),
-            substep_groups: Column::new(R::ZERO),
-            substep_group: None,
+            group: Group { of_slot: Column::new(R::ZERO), current: None },
         }
     }
 }
@@ -124,14 +135,9 @@ pub(crate) struct Chosen<L: Lanes> {
 
 impl<L: Lanes> Chosen<L> {
     #[inline(always)]
-    pub(crate) fn new(
-        substep_groups: &Column<L::Elem>,
-        substep_group: L::Elem,
-        at: usize,
-        inv_mass: L,
-    ) -> Self {
+    pub(crate) fn new(of_slot: &Column<L::Elem>, group: L::Elem, at: usize, inv_mass: L) -> Self {
         let massless = inv_mass.le(L::zero());
-        Self { moves: substep_groups.lanes::<L>()[at].equals(L::splat(substep_group)) | massless, massless }
+        Self { moves: of_slot.lanes::<L>()[at].equals(L::splat(group)) | massless, massless }
     }
 }
 
@@ -186,7 +192,7 @@ impl<R: Real> Motion<R> {
 
     /// Bodies may be as fast as they like: something has changed.
     pub fn assume_fast_bodies(&mut self) {
-        (self.needs_speculative_margin, self.may_bounce) = (true, true);
+        (self.outlook.needs_speculative_margin, self.outlook.may_bounce) = (true, true);
     }
 
     /// All bodies begin to drift anew.

@@ -92,7 +92,7 @@ impl<L: Lanes> Solving<L> {
             let moves = |slot: &u32| bodies.kind(*slot as usize) == BodyKind::Dynamic;
             let scale = |slots: [u32; 2]| groups.scale(slots.into_iter().find(moves)? as usize);
             self.stream.regroup(manifolds, self.in_rows, groups, scale);
-            motion.substep_groups.clone_from(self.substep_groups.index());
+            motion.group.of_slot.clone_from(self.substep_groups.index());
         }
         changed
     }
@@ -107,7 +107,7 @@ impl<L: Lanes> Solving<L> {
         if self.substep_groups.count() > 1 {
             self.substep_group = Some(substep_group);
             self.stream.choose(self.substep_group);
-            motion.substep_group = Some(L::Elem::from_f64(substep_group as f64));
+            motion.group.current = Some(L::Elem::from_f64(substep_group as f64));
             std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
         }
     }
@@ -118,7 +118,7 @@ impl<L: Lanes> Solving<L> {
         if self.substep_group.take().is_some() {
             self.stream.visit(&mut Follow { moved: motion.moved.fours() });
             self.stream.choose(None);
-            motion.substep_group = None;
+            motion.group.current = None;
             std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
         }
     }
@@ -236,7 +236,7 @@ impl<L: Lanes> Solving<L> {
     ) -> Warm {
         self.in_rows = context.solver == Solver::Avbd;
         let same_length = self.lengths.begin(context);
-        let may_bounce = context.needs.restitution && pushes(context.solver) && motion.may_bounce;
+        let may_bounce = context.needs.restitution && pushes(context.solver) && motion.outlook.may_bounce;
         let might_bounce = std::mem::replace(&mut self.bouncing.looked, may_bounce);
         self.bouncing.any = may_bounce && self.note_approaches(context, bodies, manifolds, motion);
         let carries = carries_impulses(context.solver);

@@ -21,6 +21,7 @@ mod engine {
     mod continuous;
     mod fields;
     mod fuzz;
+    mod homes;
     mod interface;
     mod joints;
     mod motion_laws;

@@ -1,6 +1,6 @@
 //! A world between steps: bodies and joints come and go, and everything it holds can be looked at.
 
-use super::{World, WorldError};
+use super::{Log, World, WorldError};
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::contact::{Contact, Manifolds};
 use crate::force::{Forces, MOST_ATTRACTED};
@@ -18,7 +18,7 @@ impl<L: Lanes> World<L> {
     /// Those of [`Bodies::insert`]; more bodies than may attract each other where they do.
     pub fn insert(&mut self, spec: &BodySpec) -> Result<BodyId, BodyError> {
         let body = self.bodies.live();
-        if self.forces.attraction.is_some() && body >= MOST_ATTRACTED {
+        if self.laws.forces.attraction.is_some() && body >= MOST_ATTRACTED {
             return Err(BodyError::Attracted { body, most: MOST_ATTRACTED });
         }
         let id = self.bodies.insert(spec)?;
@@ -65,13 +65,13 @@ impl<L: Lanes> World<L> {
         if settings.lanes != L::WIDTH {
             return Err(WorldError::Lanes { have: L::WIDTH, asked: settings.lanes });
         }
-        self.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
+        self.laws.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
-        let (fields_set, steps, time_secs) = (self.fields_set, self.steps, self.time_secs);
-        let stopwatch = self.stopwatch;
-        let anew = Self::from_parts(bodies, joints, self.forces, settings)?;
-        *self = Self { fields_set, steps, time_secs, stopwatch, ..anew };
+        let (revision, Log { steps, time_secs, stopwatch, .. }) = (self.laws.revision, self.log.clone());
+        *self = Self::from_parts(bodies, joints, self.laws.forces, settings)?;
+        self.laws.revision = revision;
+        self.log = Log { steps, time_secs, stopwatch, ..Log::default() };
         Ok(())
     }
 
@@ -102,7 +102,7 @@ impl<L: Lanes> World<L> {
     /// Those of [`Bodies::apply_impulse`].
     pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
         self.motion.assume_fast_bodies();
-        self.watchdog.forget();
+        self.log.watchdog.forget();
         self.bodies.apply_impulse(id, linear, angular)?;
         self.islands.wake(id.slot());
         Ok(())
@@ -125,11 +125,11 @@ impl<L: Lanes> World<L> {
     }
     /// The fields.
     pub fn forces(&self) -> &Forces {
-        &self.forces
+        &self.laws.forces
     }
     /// Seconds since the world began.
     pub fn time_secs(&self) -> f64 {
-        self.time_secs
+        self.log.time_secs
     }
     /// The settings.
     pub fn settings(&self) -> &Settings {
@@ -150,24 +150,24 @@ impl<L: Lanes> World<L> {
     }
     /// Steps taken.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.log.steps
     }
     /// What the last step counted.
     pub fn counts(&self) -> &Counts {
-        &self.counts
+        &self.log.counts
     }
     /// Time per stage since the last [`World::reset_times`]: of every step, or of every sixteenth of a world of fewer than
     /// 64 bodies, which would wait for the clock longer than for some of its stages.
     pub fn times(&self) -> &StageTimes {
-        self.stopwatch.times()
+        self.log.stopwatch.times()
     }
     /// Sets the stage times to zero; the next step is timed.
     pub fn reset_times(&mut self) {
-        self.stopwatch.reset();
+        self.log.stopwatch.reset();
     }
     /// From now on every step is timed, whatever the number of bodies: for recordings.
     pub fn time_every_step(&mut self) {
-        self.stopwatch.time_every_step();
+        self.log.stopwatch.time_every_step();
     }
     /// xxh3 over pose and velocity of all living bodies; see [`state_hash`].
     pub fn hash(&self) -> u64 {

@@ -8,24 +8,24 @@ use crate::solve::SceneNeeds;
 impl<L: Lanes> World<L> {
     /// The next step looks over the scene: bodies or fields may be others, though none came or went.
     pub(super) fn look_again(&mut self) {
-        self.inspected = self.inspected.map(|(_, removals)| (u64::MAX, removals));
+        self.made.bodies = self.made.bodies.map(|(_, removals)| (u64::MAX, removals));
     }
 
     /// Looks over the scene when it has changed: which fields, which contact terms it needs.
     pub(super) fn inspect(&mut self) {
         let seen = (self.bodies.revision(), self.bodies.removals());
-        let removed = self.inspected.is_none_or(|(_, removals)| removals != seen.1);
+        let removed = self.made.bodies.is_none_or(|(_, removals)| removals != seen.1);
         if removed && !self.joints.is_empty() {
             self.joints.prune(&self.bodies);
         }
-        if self.inspected_joints != self.joints.revision() {
-            self.inspected_joints = self.joints.revision();
+        if self.made.joints != self.joints.revision() {
+            self.made.joints = self.joints.revision();
             self.broad.keep_apart(self.joints.apart());
             self.look_over_islands();
-            self.disturbed = true;
+            self.made.forget_poses();
             self.motion.assume_fast_bodies();
         }
-        if self.inspected == Some(seen) {
+        if self.made.bodies == Some(seen) {
             return;
         }
         if removed {
@@ -33,16 +33,16 @@ impl<L: Lanes> World<L> {
             self.solving.forget();
             self.motion.forget_drift();
         }
-        self.inspected = Some(seen);
-        self.watchdog.forget();
+        self.made.bodies = Some(seen);
+        self.log.watchdog.forget();
         self.solving.freshen(!removed);
-        self.fields = self.forces.fields();
+        self.laws.fields = self.laws.forces.fields();
         if self.bodies.force.is_some() {
-            self.fields.insert(0, Field::PerBody);
+            self.laws.fields.insert(0, Field::PerBody);
         }
         let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
-        let [gx, gy] = self.forces.gravity.unwrap_or_default();
-        self.needs = SceneNeeds {
+        let [gx, gy] = self.laws.forces.gravity.unwrap_or_default();
+        self.laws.needs = SceneNeeds {
             friction: some(self.bodies.friction.as_slice()),
             restitution: some(self.bodies.restitution.as_slice()),
             length: self.broad.look_over(&self.bodies),
@@ -52,6 +52,6 @@ impl<L: Lanes> World<L> {
         self.motion.assume_fast_bodies();
         self.continuous.look_over(&self.bodies);
         self.look_over_islands();
-        self.disturbed = true;
+        self.made.forget_poses();
     }
 }

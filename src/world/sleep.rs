@@ -38,7 +38,7 @@ impl<L: Lanes> World<L> {
 
     /// Brings the runs up to date with who is awake.
     fn follow_islands(&mut self) {
-        if !self.islands.take_changed() {
+        if !self.made.take_awake(self.islands.changes()) {
             return;
         }
         self.solving.catch_up(&self.motion);
@@ -52,13 +52,11 @@ impl<L: Lanes> World<L> {
             }
         }
         self.broad.freeze(&self.bodies, awake);
-        self.regrouped = true;
-        self.groupings += 1;
     }
 
     /// Sorts the pairs into those that are looked at and those that rest, where that has changed.
     pub(super) fn regroup(&mut self) {
-        if !std::mem::take(&mut self.regrouped) {
+        if !self.made.take_sorted() {
             return;
         }
         let awake = self.islands.awake_beside_sleepers();
@@ -76,19 +74,21 @@ impl<L: Lanes> World<L> {
             woke = true;
         }
         // What woke has no pairs but those it touches: the next step looks for more, whether anything moves or not.
-        self.regrouped |= woke;
+        if woke {
+            self.made.sort_again();
+        }
     }
 
     /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
     pub(super) fn update_sleep(&mut self, dt_secs: f64, changed: bool) {
         let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
         let quiet_time =
-            self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.needs.gravity);
+            self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.laws.needs.gravity);
         if quiet_time.newly || (quiet_time.some && changed) {
-            self.islands.settle(&mut self.bodies, manifolds, runs, !self.fields.is_empty());
+            self.islands.settle(&mut self.bodies, manifolds, runs, !self.laws.fields.is_empty());
         }
-        self.counts.sleeping = self.islands.sleeping();
-        self.counts.islands = self.islands.len();
+        self.log.counts.sleeping = self.islands.sleeping();
+        self.log.counts.islands = self.islands.len();
     }
 
     /// Before the body in a slot is forgotten.
@@ -98,7 +98,7 @@ impl<L: Lanes> World<L> {
         let is_its = |slots: [u32; 2]| slots.contains(&(slot as u32));
         self.solving.put_down(&mut self.narrow.manifolds, &self.motion, is_its);
         self.narrow.manifolds.forget_slot(slot);
-        if let Some((_, removals)) = &mut self.inspected {
+        if let Some((_, removals)) = &mut self.made.bodies {
             *removals += 1;
         }
     }
@@ -124,8 +124,8 @@ impl<L: Lanes> World<L> {
     pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
         forces.check_in::<L::Elem>()?;
         forces.check_coupling(self.bodies.len(), &self.settings)?;
-        self.forces = forces;
-        self.fields_set += 1;
+        self.laws.forces = forces;
+        self.laws.revision += 1;
         self.look_again();
         self.islands.wake_all();
         Ok(())

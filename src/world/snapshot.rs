@@ -50,13 +50,13 @@ impl<L: Lanes> World<L> {
     pub fn snapshot(&self, into: &mut Snapshot, contacts: bool) {
         let bodies = &self.bodies;
         let slots = bodies.len() - 1;
-        into.step = self.steps;
+        into.step = self.log.steps;
         into.contact_width = size_of::<L::Elem>();
         into.width = if bodies.fine.is_some() { size_of::<f64>() } else { into.contact_width };
         into.slots = slots;
-        into.counts = self.counts;
-        into.times = *self.stopwatch.times();
-        into.revision = [bodies.revision(), bodies.removals(), self.fields_set];
+        into.counts = self.log.counts;
+        into.times = *self.log.stopwatch.times();
+        into.revision = [bodies.revision(), bodies.removals(), self.laws.revision];
         into.columns.clear();
         if bodies.fine.is_some() {
             let places = (0..2).flat_map(|k| (1..=slots).map(move |slot| bodies.place(slot)[k]));
@@ -135,7 +135,11 @@ impl<L: Lanes> World<L> {
             friction: bodies.friction[slot].to_f64(),
             restitution: bodies.restitution[slot].to_f64(),
         };
-        BodyTable { step: self.steps, bodies: bodies.slots().map(entry).collect(), forces: self.forces }
+        BodyTable {
+            step: self.log.steps,
+            bodies: bodies.slots().map(entry).collect(),
+            forces: self.laws.forces,
+        }
     }
 }
 

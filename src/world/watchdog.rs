@@ -5,7 +5,7 @@
 //! that was too much, for inspection. Whoever puts energy in by hand (bodies inserted, removed or written to,
 //! impulses, other fields) begins the account anew; what drives and fields that change put in counts as gained.
 
-use super::{StepError, World};
+use super::{Laws, Log, StepError, World};
 use crate::body::Bodies;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
@@ -42,21 +42,23 @@ impl Watchdog {
 impl<L: Lanes> World<L> {
     /// As a step begins: what energy is held against.
     pub(super) fn begin_watch(&mut self) {
-        if self.settings.max_gain.is_some() && self.watchdog.begun.is_none() {
-            self.watchdog.begun = Some(self.look_at_energies().sums);
+        if self.settings.max_gain.is_some() && self.log.watchdog.begun.is_none() {
+            self.log.watchdog.begun = Some(self.look_at_energies().sums);
         }
     }
 
     /// As a step ends, `free` of contacts and joints or not.
     pub(super) fn watch(&mut self, free: bool) -> Result<(), StepError> {
-        let step = self.steps;
+        let step = self.log.steps;
         if let Some(bound) = self.settings.max_speed
             && let Some((slot, speed)) = fastest_beyond(self, bound)
         {
             let stage = self.stage_behind(slot, free);
             return Err(StepError::Runaway { step, slot, speed, bound, stage });
         }
-        let (Some(bound), Some(begun)) = (self.settings.max_gain, self.watchdog.begun) else { return Ok(()) };
+        let (Some(bound), Some(begun)) = (self.settings.max_gain, self.log.watchdog.begun) else {
+            return Ok(());
+        };
         if !step.is_multiple_of(EVERY) {
             return Ok(());
         }
@@ -72,7 +74,7 @@ impl<L: Lanes> World<L> {
 
     /// Sums energies and notes those of each slot.
     fn look_at_energies(&mut self) -> Look {
-        let Self { bodies, forces, watchdog, .. } = self;
+        let Self { bodies, laws: Laws { forces, .. }, log: Log { watchdog, .. }, .. } = self;
         watchdog.last.resize(bodies.len(), [0.0; 2]);
         let dynamic = bodies.slots().filter(|&slot| bodies.inv_mass[slot] > L::Elem::ZERO);
         let (mut sum, mut risen, mut most) = (Invariants::default(), [0; 2], [f64::NEG_INFINITY; 2]);
