@@ -190,14 +190,15 @@ pub trait Lanes:
         for (at, index) in at[..Self::WIDTH].iter_mut().zip(index) {
             *at = index * 4;
         }
-        let next = |at: &mut [u32; 16]| {
-            let lanes = Self::gather_rows(rows, at);
-            for at in at {
+        // A loop: as a closure it was left a call.
+        let mut quads = [[Self::zero(); ROW]; 4];
+        for quad in &mut quads {
+            *quad = Self::gather_rows(rows, &at);
+            for at in &mut at {
                 *at += 1;
             }
-            lanes
-        };
-        [next(&mut at), next(&mut at), next(&mut at), next(&mut at)]
+        }
+        quads
     }
     /// The inverse of [`Lanes::gather_rows`] over an array of rows: `to[lane][k] = from[k][lane]`,
     /// for the first `WIDTH` rows of `to`.

@@ -56,6 +56,9 @@ impl<L: Lanes> List<L> {
     fn lane(&self, home: Home) -> LaneValues<L::Elem> {
         if home.two { self.two.lane(home.lane) } else { self.one.lane(home.lane) }
     }
+    fn impulses(&self, home: Home) -> [L::Elem; 4] {
+        if home.two { self.two.impulses(home.lane) } else { self.one.impulses(home.lane) }
+    }
     fn slots(&self, home: Home) -> [u32; 2] {
         if home.two { self.two.slots(home.lane) } else { self.one.slots(home.lane) }
     }

@@ -43,6 +43,14 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         lane
     }
 
+    /// Impulses of one lane: of both points, along the tangent, –; N·s.
+    pub(in crate::solve) fn impulses(&self, k: usize) -> [L::Elem; 4] {
+        let at = |value: &L| cast_slice::<L, L::Elem>(std::slice::from_ref(value))[k];
+        let of = |point: &Point<L>| at(&point.velocity_impulse) * at(&point.mass);
+        let second = if POINTS == 1 { L::Elem::ZERO } else { of(&self.points[POINTS - 1]) };
+        [of(&self.points[0]), second, at(&self.tangent_impulse), L::Elem::ZERO]
+    }
+
     /// Changes what one lane holds.
     pub(in crate::solve) fn set_lane(&mut self, k: usize, lane: &LaneValues<L::Elem>) {
         self.change(|at, value| cast_slice_mut::<L, L::Elem>(std::slice::from_mut(value))[k] = lane[at]);

@@ -44,7 +44,7 @@ impl<L: Lanes> Stream<L> {
             let place = changed.place as usize;
             let home = manifolds.homes()[place];
             if home.is_some() && !in_rows {
-                manifolds.impulses_mut()[place] = impulses_of(&self.lane(home));
+                manifolds.impulses_mut()[place] = self.lists[home.list as usize].impulses(home);
             }
             manifolds.rematch(changed);
             if !home.is_some() {
