@@ -20,6 +20,7 @@ mod drive;
 mod fine;
 mod grow;
 mod kind;
+mod outline;
 mod polygons;
 mod spec;
 

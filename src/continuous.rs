@@ -2,12 +2,13 @@
 //!
 //! A body is fast when a point of it may have moved further in one step than half its inner radius
 //! ([`Bodies::core`]); the passes that end a step note such bodies ([`Fast`]), at one comparison per lane value.
-//! Each is moved back to the first pose of its step, in a straight line at even speed and spin, at which it meets
-//! a static or kinematic body; from there a kinematic one takes it along. Its velocity stays: the next step's
-//! contact stops it.
+//! Each goes its way in a straight line at even speed and spin until it meets another body: there both get the impulse of
+//! their restitution and friction, and go on with what is left of the step, where either may meet again ([`MEETINGS`]).
+//! What happens within a step happens in the order of its instants; ties go by slots.
 //!
-//! **Not against dynamic bodies.** Those may be moved back themselves, so that the answer would depend on whose
-//! turn is first; and a scene in which everything flies ([`crate::scene`]'s `free_flight`) would test all pairs.
+//! Whom it may meet: every static and kinematic body, and of dynamic ones those it has a candidate pair with, which reach as
+//! far as both move. Gravity is reckoned in: a body that meets something at the share t of a step has by then the velocity
+//! of its end less g·(1 − t)·dt.
 //!
 //! # Time of impact
 //! Conservative advancement over separating axes (Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems,
@@ -31,17 +32,77 @@
 //! bounding circle in its place: a wall's own circle is as wide as the wall is long and turns nothing away. A face
 //! that promises a whole step to the circle promises it to the body, so the search would have said the same.
 
+mod approach;
+mod respond;
+mod sweep;
+
 use glam::DVec2;
 
-use crate::body::{Bodies, BodyKind, Form};
-use crate::each::Each as _;
+use crate::body::{Bodies, BodyKind};
 use crate::lanes::Real;
 use crate::motion::{Fast, FastBodies};
-use crate::shape::MAX_VERTICES;
-use crate::vec2::{Rot, Vec2};
+use crate::seams::Seams;
+use crate::vec2::Rot;
 
-/// Advances after which a body is stopped where it is known not to have met anything yet.
-const ADVANCES: usize = 64;
+use approach::{Approach, Reach, approach, impact, touches};
+use respond::Motion;
+use sweep::{Sweep, Wall};
+
+/// How often a body may meet others within a step; then it stays where it is.
+const MEETINGS: u32 = 8;
+
+/// What a step knows that its fast bodies may meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a, R> {
+    /// What counts as touching, metres.
+    pub(crate) skin_m: f64,
+    /// Gaps the solver hears of, metres.
+    pub(crate) margin: R,
+    /// The step, seconds.
+    pub(crate) dt_secs: f64,
+    /// m/s².
+    pub(crate) gravity: [f64; 2],
+    /// Candidate pairs.
+    pub(crate) pairs: &'a [[u32; 2]],
+    /// Pairs that do not collide, ordered.
+    pub(crate) apart: &'a [[u32; 2]],
+    /// What can be touched of outlines that are covered in part.
+    pub(crate) seams: &'a Seams,
+}
+
+/// A body on its way through a step.
+#[derive(Clone, Debug)]
+struct Way {
+    slot: usize,
+    /// What is left of it.
+    sweep: Sweep,
+    /// The share of the step that is over.
+    since: f64,
+    motion: Motion,
+    reach: Reach,
+    /// It has met something: its pose and velocity are to be written.
+    met: bool,
+    left: u32,
+    next: Option<Meeting>,
+}
+
+/// What a body meets next.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    /// As a share of the whole step.
+    at: f64,
+    /// Unit, towards what it meets.
+    axis: DVec2,
+    with: Other,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Other {
+    /// One of the obstacles.
+    Wall(usize),
+    /// One of the ways.
+    Way(usize),
+}
 
 /// The fast bodies of a step, and what they may meet; memory is kept from step to step.
 #[derive(Clone, Debug)]
@@ -51,11 +112,26 @@ pub(crate) struct Continuous<R: Real> {
     obstacles: Vec<u32>,
     /// The obstacles' ways through this step, in their order.
     walls: Vec<Wall>,
+    ways: Vec<Way>,
+    /// By slot: which way, counted from 1; 0 for none.
+    way_of: Vec<u32>,
+    /// Ways that may meet: each with every other, in order.
+    pairs: Vec<[u32; 2]>,
+    /// Those that one may meet, while it looks ahead.
+    beside: Vec<u32>,
 }
 
 impl<R: Real> Default for Continuous<R> {
     fn default() -> Self {
-        Self { fast: Vec::new(), obstacles: Vec::new(), walls: Vec::new() }
+        Self {
+            fast: Vec::new(),
+            obstacles: Vec::new(),
+            walls: Vec::new(),
+            ways: Vec::new(),
+            way_of: Vec::new(),
+            pairs: Vec::new(),
+            beside: Vec::new(),
+        }
     }
 }
 
@@ -68,359 +144,290 @@ impl<R: Real> Continuous<R> {
     }
 
     /// Where a step is to note its fast bodies: nowhere if nothing can be in their way.
-    pub(crate) fn begin(&mut self, wanted: bool) -> FastBodies<'_, R> {
+    pub(crate) fn begin(&mut self, wanted: bool, pairs: usize) -> FastBodies<'_, R> {
         self.fast.clear();
-        (wanted && !self.obstacles.is_empty()).then_some(&mut self.fast)
+        (wanted && (pairs > 0 || !self.obstacles.is_empty())).then_some(&mut self.fast)
     }
 
-    /// Moves the fast bodies of a step of `dt_secs` back to where they meet something. `skin_m`: what counts as
-    /// touching, metres; `margin`: gaps the solver hears of; `apart`: pairs that do not collide, ordered; bodies moved
-    /// back are marked in `has_moved`.
-    pub(crate) fn stop(
-        &mut self,
-        bodies: &mut Bodies<R>,
-        skin_m: f64,
-        margin: R,
-        dt_secs: f64,
-        apart: &[[u32; 2]],
-        has_moved: &mut [bool],
-    ) {
+    /// Lets the fast bodies of a step meet what is in their ways; those that do are marked in `has_moved`.
+    pub(crate) fn stop(&mut self, bodies: &mut Bodies<R>, around: &Around<'_, R>, has_moved: &mut [bool]) {
         if self.fast.is_empty() {
             return;
         }
         self.walls.clear();
-        let walls = self.obstacles.iter().map(|&slot| Wall::new(bodies, slot as usize, dt_secs));
+        let walls = self.obstacles.iter().map(|&slot| Wall::new(bodies, slot as usize, around.dt_secs));
         self.walls.extend(walls);
-        for fast in &self.fast {
-            let slot = fast.slot as usize;
-            let sweep = Sweep::of_fast(bodies, fast);
-            if !sweep.is_finite() {
-                // The finite check names it.
+        self.set_out(bodies, around);
+        self.pairs.sort_unstable();
+        for way in 0..self.ways.len() {
+            self.look_ahead(bodies, around, way);
+        }
+        while let Some(way) = self.earliest() {
+            self.meet(bodies, around, way);
+        }
+        for way in self.ways.iter().filter(|way| way.met) {
+            write(bodies, way);
+            has_moved[way.slot] = true;
+        }
+    }
+
+    /// Slots of the bodies that have met something in the last step.
+    pub(crate) fn met(&self) -> impl Iterator<Item = usize> {
+        let ways = if self.fast.is_empty() { &[][..] } else { &self.ways[..] };
+        ways.iter().filter(|way| way.met).map(|way| way.slot)
+    }
+
+    /// The ways of fast bodies, and of those they have pairs with.
+    fn set_out(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>) {
+        self.ways.clear();
+        self.pairs.clear();
+        self.way_of.clear();
+        self.way_of.resize(bodies.len(), 0);
+        for at in 0..self.fast.len() {
+            let fast = self.fast[at];
+            self.set_out_one(bodies, around, fast.slot as usize, Sweep::of_fast(bodies, &fast));
+        }
+        let fast = self.ways.len();
+        for &[a, b] in around.pairs {
+            let both = [a, b].map(|slot| slot as usize);
+            let is_fast = |slot: usize| (1..=fast).contains(&(self.way_of[slot] as usize));
+            if !both.iter().any(|&slot| is_fast(slot))
+                || both.iter().any(|&slot| bodies.kind(slot) != BodyKind::Dynamic)
+            {
                 continue;
             }
-            let reach = Reach::new(
-                skin_m,
-                margin > R::ZERO,
-                bodies.core[slot].to_f64(),
-                &sweep,
-                bodies.place_epsilon(),
-            );
-            let mut first: Option<(f64, Sweep)> = None;
-            for (&other, wall) in self.obstacles.iter().zip(&self.walls) {
-                if !sweep.may_meet(&wall.sweep, &reach) || wall.keeps_clear(&sweep, &reach) {
-                    continue;
-                }
-                let pair = [other.min(slot as u32), other.max(slot as u32)];
-                if !bodies.may_collide(slot, other as usize) || apart.binary_search(&pair).is_ok() {
-                    continue;
-                }
-                if let Some(t) = impact(&sweep, &wall.sweep, &reach)
-                    && first.is_none_or(|(earliest, _)| t < earliest)
-                {
-                    first = Some((t, wall.sweep));
+            for slot in both {
+                if self.way_of[slot] == 0 {
+                    // As an obstacle that came to where it is by its velocity.
+                    let sweep = Sweep::of_obstacle(bodies, slot, around.dt_secs);
+                    self.set_out_one(bodies, around, slot, sweep);
                 }
             }
-            if let Some((t, obstacle)) = first {
-                put(bodies, fast, sweep.x, t, &obstacle);
-                has_moved[slot] = true;
+            let ways = both.map(|slot| self.way_of[slot]);
+            // One that is not finite has none; the finite check names it.
+            if ways.iter().all(|&way| way > 0) {
+                let [a, b] = ways.map(|way| way - 1);
+                self.pairs.extend([[a, b], [b, a]]);
             }
         }
     }
-}
 
-/// Puts a body where it was at the share `t` of its step; what it met there takes it along for the rest.
-fn put<R: Real>(bodies: &mut Bodies<R>, fast: &Fast<R>, from: DVec2, t: f64, met: &Sweep) {
-    let slot = fast.slot as usize;
-    let [.., c, s] = fast.start;
-    let [dx, dy, angle] = fast.moved.each(|moved| moved.to_f64() * t);
-    let (at, rest) = (from + DVec2::new(dx, dy), 1.0 - t);
-    let (carried, turn) = (met.carry(at, t), met.angle * rest);
-    let rot = Rot { c, s }.turned(R::from_f64(angle + turn));
-    bodies.set_place(slot, carried.into());
-    (bodies.c[slot], bodies.s[slot]) = (rot.c, rot.s);
-}
-
-/// How near counts, metres.
-#[derive(Clone, Copy, Debug)]
-struct Reach {
-    /// Pairs this near as a step begins are the solver's.
-    touching: f64,
-    /// The separation bodies are stopped at.
-    target: f64,
-    /// What a search may miss the target by.
-    tolerance: f64,
-    /// Bodies that end their way no nearer than this go it to its end.
-    clear: f64,
-    /// Radius of the disc about the centroid that never gets in, metres.
-    core: f64,
-}
-
-impl Reach {
-    fn new(skin_m: f64, hears_of_gaps: bool, core: f64, sweep: &Sweep, epsilon: f64) -> Self {
-        let coordinate = sweep.x.abs().max_element() + sweep.moved.abs().max_element();
-        let skin = skin_m.min(core / 50.0).max(16.0 * epsilon * coordinate);
-        let (touching, target) = if hears_of_gaps { (2.0 * skin, 0.5 * skin) } else { (0.0, -skin) };
-        let tolerance = 0.25 * skin;
-        Self { touching, target, tolerance, clear: target.min(-tolerance), core }
+    /// Appends a way; the ways of fast bodies come first.
+    fn set_out_one(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, slot: usize, sweep: Sweep) {
+        if !sweep.is_finite() {
+            return;
+        }
+        let core = bodies.core[slot].to_f64();
+        let hears_of_gaps = around.margin > R::ZERO;
+        let reach = Reach::new(around.skin_m, hears_of_gaps, core, &sweep, bodies.place_epsilon());
+        let motion = Motion::of(bodies, slot);
+        self.ways.push(Way {
+            slot,
+            sweep,
+            since: 0.0,
+            motion,
+            reach,
+            met: false,
+            left: MEETINGS,
+            next: None,
+        });
+        self.way_of[slot] = self.ways.len() as u32;
     }
 
-    /// For the core: no contact knows of it, so it is stopped however near it begins.
-    fn of_core(self) -> Self {
-        let target = 2.0 * self.tolerance;
-        Self { touching: 0.0, target, clear: target, ..self }
-    }
-}
-
-/// A shape and its way through a step; time runs from 0 to 1.
-#[derive(Clone, Copy, Debug)]
-struct Sweep {
-    /// Centroid at the beginning, metres.
-    x: DVec2,
-    rot: Rot<f64>,
-    /// Metres and rad per step.
-    moved: DVec2,
-    angle: f64,
-    /// Radius of a disc; 0 for outlines.
-    disc: f64,
-    /// Bounding radius.
-    radius: f64,
-    /// Vertices in the body frame, counter-clockwise.
-    vertices: [DVec2; MAX_VERTICES],
-    count: usize,
-}
-
-impl Sweep {
-    fn of_fast<R: Real>(bodies: &Bodies<R>, fast: &Fast<R>) -> Self {
-        let [x, y, c, s] = fast.start.each(R::to_f64);
-        let [dx, dy, angle] = fast.moved.each(R::to_f64);
-        let still = Self::shape(bodies, fast.slot as usize);
-        let [x, y] = if bodies.fine.is_some() {
-            let [x, y] = bodies.place(fast.slot as usize);
-            [x - dx, y - dy]
-        } else {
-            [x, y]
-        };
-        Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, ..still }
-    }
-
-    /// The poses of obstacles are those at the step's end: a kinematic one came there by its velocity.
-    fn of_obstacle<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
-        let [x, y] = bodies.place(slot);
-        let [c, s, vx, vy, w] =
-            [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].each(|column| column[slot].to_f64());
-        let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
-        let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
-        Self { x, rot, moved, angle, ..Self::shape(bodies, slot) }
-    }
-
-    fn shape<R: Real>(bodies: &Bodies<R>, slot: usize) -> Self {
-        let (hx, hy) = (bodies.extent_x[slot].to_f64(), bodies.extent_y[slot].to_f64());
-        let mut vertices = [DVec2::ZERO; MAX_VERTICES];
-        let (disc, count) = match bodies.form(slot) {
-            Form::Circle => (hx, 0),
-            Form::Box => {
-                let corners = [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].each(DVec2::from);
-                vertices[..4].copy_from_slice(&corners);
-                (0.0, 4)
-            }
-            Form::Polygon => {
-                let at = bodies.shapes(slot).start;
-                let [x, y, ..] = &bodies.polygons.body[at];
-                vertices = crate::each::indexed(|k| DVec2::new(x[k].to_f64(), y[k].to_f64()));
-                (0.0, usize::from(bodies.polygons.count[at]))
+    /// Finds what a body meets next.
+    fn look_ahead(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) {
+        if self.ways[way].left == 0 {
+            self.ways[way].next = None;
+            return;
+        }
+        let beside = self.beside(bodies, around, way);
+        let mut first: Option<Meeting> = None;
+        let mut keep = |found: Option<Meeting>| {
+            if let Some(found) = found
+                && first.is_none_or(|first| found.at < first.at)
+            {
+                first = Some(found);
             }
         };
-        Self {
-            x: DVec2::ZERO,
-            rot: Rot { c: 1.0, s: 0.0 },
-            moved: DVec2::ZERO,
-            angle: 0.0,
-            disc,
-            radius: bodies.radius[slot].to_f64(),
-            vertices,
-            count,
+        if self.is_fast(way) {
+            for wall in 0..self.walls.len() {
+                keep(self.wall_ahead(bodies, around, way, wall));
+            }
         }
+        for other in &beside {
+            keep(self.body_ahead(way, *other as usize));
+        }
+        self.beside = beside;
+        self.ways[way].next = first;
     }
 
-    fn is_finite(&self) -> bool {
-        self.x.is_finite() && self.moved.is_finite() && self.angle.is_finite()
+    /// The ways that may meet one: those it has a pair with, or once it has met something, and goes where nobody expected it,
+    /// all that are near its way.
+    fn beside(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) -> Vec<u32> {
+        let mut beside = std::mem::take(&mut self.beside);
+        beside.clear();
+        let Way { slot, sweep, met, .. } = self.ways[way];
+        let length = sweep.moved.length();
+        if !met || length <= bodies.core[slot].to_f64() {
+            let begin = self.pairs.partition_point(|&[own, _]| (own as usize) < way);
+            let own = self.pairs[begin..].iter().take_while(|[own, _]| *own as usize == way);
+            beside.extend(own.map(|&[_, other]| other));
+            return beside;
+        }
+        for other in bodies.slots().filter(|&other| other != slot && bodies.kind(other) == BodyKind::Dynamic)
+        {
+            let speed = DVec2::new(bodies.vx[other].to_f64(), bodies.vy[other].to_f64()).length();
+            let reach =
+                length + speed * around.dt_secs + (bodies.radius[other] + bodies.radius[slot]).to_f64();
+            let pair = [slot.min(other) as u32, slot.max(other) as u32];
+            if (DVec2::from(bodies.place(other)) - sweep.x).length_squared() > reach * reach
+                || !bodies.may_collide(slot, other)
+                || around.apart.binary_search(&pair).is_ok()
+            {
+                continue;
+            }
+            if self.way_of[other] == 0 {
+                let sweep = Sweep::of_obstacle(bodies, other, around.dt_secs);
+                self.set_out_one(bodies, around, other, sweep);
+            }
+            beside.extend(self.way_of[other].checked_sub(1));
+        }
+        beside
     }
 
-    /// Do the bounding circles meet on their way?
-    fn may_meet(&self, other: &Self, reach: &Reach) -> bool {
-        let (from, way) = (other.x - self.x, other.moved - self.moved);
-        let length_squared = way.length_squared();
-        let nearest =
-            if length_squared > 0.0 { (-from.dot(way) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-        let near = self.radius + other.radius + reach.touching;
-        (from + way * nearest).length_squared() <= near * near
+    /// Is a way one of a fast body, not of one that it may meet?
+    fn is_fast(&self, way: usize) -> bool {
+        way < self.fast.len() || self.ways[way].met
     }
 
-    /// The disc about the centroid.
-    fn core(&self, radius: f64) -> Self {
-        Self { disc: radius, radius, count: 0, ..*self }
+    fn wall_ahead(
+        &self,
+        bodies: &Bodies<R>,
+        around: &Around<'_, R>,
+        way: usize,
+        wall: usize,
+    ) -> Option<Meeting> {
+        let Way { slot, sweep, since, reach, .. } = &self.ways[way];
+        let (other, wall_sweep) = (self.obstacles[wall], self.walls[wall].sweep.after(*since));
+        if !sweep.may_meet(&wall_sweep, reach)
+            || (*since == 0.0 && self.walls[wall].keeps_clear(sweep, reach))
+        {
+            return None;
+        }
+        let pair = [other.min(*slot as u32), other.max(*slot as u32)];
+        if !bodies.may_collide(*slot, other as usize) || around.apart.binary_search(&pair).is_ok() {
+            return None;
+        }
+        let (t, axis) = impact(sweep, &wall_sweep, reach)?;
+        let outline = around.seams.of(other);
+        let met = outline.map_or(Some(axis), |outline| touches(sweep, t, outline, reach))?;
+        Some(Meeting { at: since + t * (1.0 - since), axis: met, with: Other::Wall(wall) })
     }
 
-    /// What spin can close along any axis: a disc's none.
-    fn spin_speed(&self) -> f64 {
-        if self.count == 0 { 0.0 } else { self.angle.abs() * self.radius }
-    }
-
-    /// Where a point that is at `point` at time `t` ends if it goes with the body.
-    fn carry(&self, point: DVec2, t: f64) -> DVec2 {
-        let arm = point - (self.x + self.moved * t);
-        let turn = Rot { c: 1.0, s: 0.0 }.turned(self.angle * (1.0 - t));
-        let turned = turn.apply(Vec2::new(arm.x, arm.y));
-        point + self.moved * (1.0 - t) + (DVec2::new(turned.x, turned.y) - arm)
-    }
-
-    fn at(&self, t: f64) -> Placed {
-        let rot = self.rot.turned(self.angle * t);
-        let turned = |v: DVec2| {
-            let v = rot.apply(Vec2::new(v.x, v.y));
-            DVec2::new(v.x, v.y)
+    fn body_ahead(&self, way: usize, other: usize) -> Option<Meeting> {
+        let (own, their) = (&self.ways[way], &self.ways[other]);
+        let since = own.since.max(their.since);
+        // Both from the later of the instants they were last seen at.
+        let from = |way: &Way| {
+            let over = if way.since < 1.0 { (since - way.since) / (1.0 - way.since) } else { 0.0 };
+            way.sweep.after(over)
         };
-        Placed {
-            centre: self.x + self.moved * t,
-            disc: self.disc,
-            vertices: self.vertices.each(turned),
-            count: self.count,
+        let (own_sweep, their_sweep) = (from(own), from(their));
+        if !own_sweep.may_meet(&their_sweep, &own.reach) {
+            return None;
         }
-    }
-}
-
-/// An obstacle, and its faces as the step begins.
-#[derive(Clone, Debug)]
-struct Wall {
-    sweep: Sweep,
-    /// Outward normal, and how far the shape reaches along it; as many as the shape has vertices.
-    faces: [(DVec2, f64); MAX_VERTICES],
-}
-
-impl Wall {
-    fn new<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
-        let sweep = Sweep::of_obstacle(bodies, slot, dt_secs);
-        let placed = sweep.at(0.0);
-        let mut faces = [(DVec2::ZERO, 0.0); MAX_VERTICES];
-        for (face, normal) in faces.iter_mut().zip(placed.normals()) {
-            *face = (normal, placed.extent(normal));
-        }
-        Self { sweep, faces }
-    }
-
-    /// Does a face promise that `body` does not come near in this step, whatever its outline? See [`approach`],
-    /// whose first advance would say so too.
-    fn keeps_clear(&self, body: &Sweep, reach: &Reach) -> bool {
-        let (from, way) = (body.x - self.sweep.x, body.moved - self.sweep.moved);
-        let spin = body.spin_speed() + self.sweep.spin_speed();
-        self.faces[..self.sweep.count].iter().any(|&(normal, extent)| {
-            let apart = normal.dot(from) - extent - body.radius;
-            apart > reach.touching && apart - reach.clear >= spin - normal.dot(way)
-        })
-    }
-}
-
-/// A shape where it is.
-#[derive(Clone, Copy, Debug)]
-struct Placed {
-    centre: DVec2,
-    disc: f64,
-    /// About the centre, world axes.
-    vertices: [DVec2; MAX_VERTICES],
-    count: usize,
-}
-
-impl Placed {
-    fn vertices(&self) -> &[DVec2] {
-        &self.vertices[..self.count]
-    }
-
-    /// How far the shape reaches from its centre along `axis`.
-    fn extent(&self, axis: DVec2) -> f64 {
-        let corners = self.vertices().iter().map(|v| axis.dot(*v));
-        if self.count == 0 { self.disc } else { corners.fold(f64::MIN, f64::max) }
-    }
-
-    /// Outward unit normals of the faces.
-    fn normals(&self) -> impl Iterator<Item = DVec2> + '_ {
-        let next = self.vertices().iter().cycle().skip(1);
-        self.vertices().iter().zip(next).map(|(&p, &q)| -(q - p).perp().normalize())
-    }
-
-    /// From a disc's centre towards the nearest vertex, or the centre of the other disc.
-    fn towards(&self, other: &Self) -> DVec2 {
-        let to = other.centre - self.centre;
-        let nearer = |a: DVec2, b: &DVec2| {
-            let b = to + *b;
-            if b.length_squared() < a.length_squared() { b } else { a }
-        };
-        let start = other.vertices().first().map_or(to, |v| to + *v);
-        other.vertices().iter().fold(start, nearer).normalize_or(DVec2::Y)
-    }
-}
-
-/// When a fast body meets an obstacle, as a share of the step. A pair that touches from the beginning is the
-/// solver's, which stops points and not what turns about them: there only the body's core is held back.
-fn impact(body: &Sweep, obstacle: &Sweep, reach: &Reach) -> Option<f64> {
-    match approach(body, obstacle, reach) {
-        Approach::Meets(t) => Some(t),
-        Approach::Passes => None,
-        Approach::Touching => match approach(&body.core(reach.core), obstacle, &reach.of_core()) {
-            Approach::Meets(t) => Some(t),
+        match approach(&own_sweep, &their_sweep, &own.reach) {
+            Approach::Meets(t, axis) => {
+                Some(Meeting { at: since + t * (1.0 - since), axis, with: Other::Way(other) })
+            }
             Approach::Passes | Approach::Touching => None,
-        },
+        }
     }
-}
 
-/// How two bodies come to each other in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Approach {
-    /// As near as wanted, for the first time at this share of it.
-    Meets(f64),
-    /// Never as near.
-    Passes,
-    /// Near from the beginning.
-    Touching,
-}
+    /// The body that meets something first, by slot where several do.
+    fn earliest(&self) -> Option<usize> {
+        let meets = |way: &usize| self.ways[*way].next.map(|next| (next.at, self.ways[*way].slot));
+        (0..self.ways.len())
+            .filter(|way| meets(way).is_some())
+            .min_by(|a, b| meets(a).partial_cmp(&meets(b)).unwrap_or(std::cmp::Ordering::Equal))
+    }
 
-/// See the module's documentation.
-fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
-    let (velocity, spin) = (b.moved - a.moved, a.spin_speed() + b.spin_speed());
-    let mut t = 0.0;
-    for _ in 0..ADVANCES {
-        let (placed_a, placed_b) = (a.at(t), b.at(t));
-        let to_b = placed_b.centre - placed_a.centre;
-        let (mut separation, mut wait, mut clear) = (f64::MIN, 0.0f64, false);
-        let mut along = |axis: DVec2| {
-            let apart = axis.dot(to_b) - placed_a.extent(axis) - placed_b.extent(-axis);
-            separation = separation.max(apart);
-            let closing = spin - axis.dot(velocity);
-            clear |= apart > reach.touching && apart - reach.clear >= closing * (1.0 - t);
-            let spare = apart - reach.target;
-            if spare > 0.0 {
-                wait = wait.max(if closing > 0.0 { spare / closing } else { f64::INFINITY });
+    /// Lets a body meet what it meets next, and looks ahead again.
+    fn meet(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) {
+        let Some(Meeting { at, axis, with }) = self.ways[way].next.take() else { return };
+        let rest_secs = (1.0 - at) * around.dt_secs;
+        let gained = DVec2::from(around.gravity) * rest_secs;
+        self.go_to(way, at);
+        let mut own = self.ways[way].motion;
+        own.velocity -= gained;
+        let placed = self.ways[way].sweep.at(0.0);
+        match with {
+            Other::Wall(wall) => {
+                let slot = self.obstacles[wall] as usize;
+                let their = self.walls[wall].sweep.after(at).at(0.0);
+                let slots = [self.ways[way].slot, slot];
+                respond::collide(
+                    bodies,
+                    slots,
+                    [&placed, &their],
+                    axis,
+                    [&mut own, &mut Motion::of(bodies, slot)],
+                );
+                own.velocity += gained;
+                self.go_on(way, own, rest_secs, gained);
+                self.look_ahead(bodies, around, way);
             }
-        };
-        placed_a.normals().for_each(&mut along);
-        placed_b.normals().for_each(|axis| along(-axis));
-        if a.count == 0 {
-            along(placed_a.towards(&placed_b));
-        } else if b.count == 0 {
-            along(-placed_b.towards(&placed_a));
-        }
-        if t == 0.0 && separation <= reach.touching {
-            return Approach::Touching;
-        }
-        if wait == f64::INFINITY || clear {
-            return Approach::Passes;
-        }
-        if separation <= reach.target + reach.tolerance {
-            return Approach::Meets(t);
-        }
-        t += wait;
-        if t >= 1.0 {
-            return Approach::Passes;
+            Other::Way(other) => {
+                self.go_to(other, at);
+                let mut their = self.ways[other].motion;
+                their.velocity -= gained;
+                let their_placed = self.ways[other].sweep.at(0.0);
+                let slots = [self.ways[way].slot, self.ways[other].slot];
+                respond::collide(bodies, slots, [&placed, &their_placed], axis, [&mut own, &mut their]);
+                own.velocity += gained;
+                their.velocity += gained;
+                self.go_on(way, own, rest_secs, gained);
+                self.go_on(other, their, rest_secs, gained);
+                // Whoever was to meet one of the two looks again.
+                for k in 0..self.ways.len() {
+                    let expects = |with: Other| matches!(with, Other::Way(met) if met == way || met == other);
+                    if k == way || k == other || self.ways[k].next.is_some_and(|next| expects(next.with)) {
+                        self.look_ahead(bodies, around, k);
+                    }
+                }
+            }
         }
     }
-    Approach::Meets(t)
+
+    /// A body is where it is at an instant of the step.
+    fn go_to(&mut self, way: usize, at: f64) {
+        let way = &mut self.ways[way];
+        let over = if way.since < 1.0 { ((at - way.since) / (1.0 - way.since)).clamp(0.0, 1.0) } else { 1.0 };
+        way.sweep = way.sweep.after(over);
+        way.since = at;
+    }
+
+    /// A body goes on with the velocity it will have as the step ends, of which it has yet to gain some.
+    fn go_on(&mut self, way: usize, motion: Motion, rest_secs: f64, gained: DVec2) {
+        let way = &mut self.ways[way];
+        (way.motion, way.met) = (motion, true);
+        way.left = way.left.saturating_sub(1);
+        if way.left > 0 {
+            way.sweep.moved = (motion.velocity - gained * 0.5) * rest_secs;
+            way.sweep.angle = motion.spin * rest_secs;
+        } else {
+            (way.sweep.moved, way.sweep.angle) = (DVec2::ZERO, 0.0);
+        }
+    }
+}
+
+/// Pose and velocity at the end of a way.
+fn write<R: Real>(bodies: &mut Bodies<R>, way: &Way) {
+    let end = way.sweep.after(1.0);
+    let rot = Rot { c: R::from_f64(end.rot.c), s: R::from_f64(end.rot.s) };
+    bodies.set_place(way.slot, end.x.into());
+    (bodies.c[way.slot], bodies.s[way.slot]) = (rot.c, rot.s);
+    bodies.vx[way.slot] = R::from_f64(way.motion.velocity.x);
+    bodies.vy[way.slot] = R::from_f64(way.motion.velocity.y);
+    bodies.w[way.slot] = R::from_f64(way.motion.spin);
 }

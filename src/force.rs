@@ -13,6 +13,7 @@ use crate::lanes::Real;
 use crate::pair;
 use crate::settings::Settings;
 
+pub(crate) use field::acceleration_of;
 pub use field::{Field, Matter, acceleration};
 
 /// A field whose coefficients cannot be run with.

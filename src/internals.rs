@@ -13,9 +13,9 @@ use crate::world::World;
 pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
 pub use crate::column::BLOCK;
 pub use crate::integrate::{advance, fly, predict};
-pub use crate::island::Islands;
+pub use crate::island::{Demand, Islands, Pull, QuietTime};
 pub use crate::motion::{CONTACT_REUSE_DISTANCE, Motion, Plan, Warm};
-pub use crate::narrow::{MovedBodies, Narrow};
+pub use crate::narrow::{MovedBodies, Narrow, Stride};
 pub use crate::solve::soft::{HERTZ_TIMES_SUBSTEP, PUSH_CAP};
 pub use crate::solve::{SceneNeeds, SolverContext, Solving, carries_impulses, pushes};
 
@@ -64,7 +64,7 @@ pub fn run_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>, pair
 
 /// [`Narrow::collide`] without margin.
 pub fn collide_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>) {
-    at_width!(lanes, narrow.collide(bodies, 0.0, 0.0));
+    at_width!(lanes, narrow.collide(bodies, 0.0, 0.0, Stride { secs: 0.0, fallen: [0.0; 2] }));
 }
 
 /// [`fly`] without noting fast bodies.

@@ -20,32 +20,23 @@
 //!
 //! An island that rests on nothing sleeps only where no field acts: a thrown body is slow at its apex, an
 //! oscillator where it turns, and no time tells them from a body at rest.
+//!
+//! When a body is quiet is said in `island/quiet.rs`, what of an island may not sleep though its bodies are quiet in
+//! [`Demand`].
+
+mod quiet;
 
 use std::ops::Range;
 
 use crate::body::{Bodies, BodyKind};
-use crate::column::Column;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
-use crate::lanes::{LaneMask, Lanes, Real};
-use crate::motion::lanes_in;
+use crate::lanes::{Lanes, Real};
 use crate::partition::Sets;
 
-/// All bodies of an island must have been quiet for so long before it falls asleep.
-pub(crate) const QUIET_SECS: f64 = 0.5;
-/// Below this speed, in bounding radii per second, a body is quiet: in [`QUIET_SECS`] it then goes no further than
-/// a manifold is held to be unchanged ([`crate::motion::CONTACT_REUSE_DISTANCE`]).
-///
-/// Measured (largest speed of any body per half second): pyramid/10 falls below 1 mm/s in 2 s, pyramid/20 below 5
-/// mm/s in 4.5 s, polygons/150 below 2 mm/s in 8 s, rain/200 and cards/3 likewise, all of them decaying towards 0;
-/// an arch creeps by 1 mm/s, a column of 20 boxes wavers by 1.7 mm/s. What must not sleep: in circles/150 a disc of
-/// 0.6 m rolls on by 9.2 mm/s. With radii of 0.6 to 1 m the bound is 5 to 8 mm/s, between the two.
-///
-/// `pgs` leaves a resting body ½gh of velocity, 2 cm/s with the defaults, which its next step takes away: under it
-/// nothing of ordinary size falls asleep.
-const QUIET_RADII_PER_SEC: f64 = crate::motion::CONTACT_REUSE_DISTANCE / QUIET_SECS;
-/// And below what gravity gives in so many seconds: large bodies and weak gravity take their time to begin a fall.
-const QUIET_FALL_SECS: f64 = 1e-3;
+use quiet::Quiet;
+
+pub use quiet::{Pull, QuietTime};
 
 /// What a body's island is known to be, by its root: bits.
 mod trait_bits {
@@ -58,18 +49,21 @@ mod trait_bits {
 }
 use trait_bits::{DRIFTING, RESTLESS, SUPPORTED};
 
-/// Whether islands are worth a look after a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct QuietTime {
-    /// Some dynamic body has been quiet for [`QUIET_SECS`].
-    pub some: bool,
-    /// One has been so since this step.
-    pub newly: bool,
+/// What a link asks of its ends before they may sleep.
+#[derive(Clone, Copy, Debug)]
+pub struct Demand {
+    /// Slots of its ends.
+    pub ends: [u32; 2],
+    /// For how long they must have been quiet, seconds; for ever where it keeps them moving.
+    pub quiet_secs: f64,
+    /// How far from each other it holds their centroids, metres: the longer an island's links together, the slower it
+    /// may swing.
+    pub reach: f64,
 }
 
 /// Who sleeps; memory is kept from step to step.
 ///
-/// Bytes per slot in f32: two flags 2, ring 4, set 4, bits 1, quiet time 4.
+/// Bytes per slot in f32: two flags 2, ring 4, set 4, bits 1, reach 8, quiet 28.
 #[derive(Clone, Debug)]
 pub struct Islands<R: Real> {
     asleep: Vec<bool>,
@@ -77,12 +71,15 @@ pub struct Islands<R: Real> {
     awake: Vec<bool>,
     /// Of a body that sleeps, the next one of its island: a ring, so that waking costs what the island has.
     next: Vec<u32>,
-    /// Seconds a body has been quiet; far below 0 while it sleeps, so that it does not tire again.
-    quiet_secs: Column<R>,
+    quiet: Quiet<R>,
     /// Islands in the making.
     sets: Sets,
     bits: Vec<u8>,
     kinematic: Vec<u32>,
+    /// Of links, while they are asked.
+    demands: Vec<Demand>,
+    /// Metres, by root, while demands are met.
+    reach: Vec<f64>,
     /// Slots that hang together without touching.
     links: Vec<[u32; 2]>,
     /// Those of the last look, while they are compared.
@@ -93,6 +90,8 @@ pub struct Islands<R: Real> {
     rings: usize,
     /// Kinematic bodies may have been given other velocities.
     pushed: bool,
+    /// A link's demand was not met yet that time may meet.
+    waits: bool,
     /// All times are 0.
     fresh: bool,
     /// How often who is awake has changed.
@@ -105,10 +104,12 @@ impl<R: Real> Default for Islands<R> {
             asleep: Vec::new(),
             awake: Vec::new(),
             next: Vec::new(),
-            quiet_secs: Column::new(R::ZERO),
+            quiet: Quiet::default(),
             sets: Sets::default(),
             bits: Vec::new(),
             kinematic: Vec::new(),
+            demands: Vec::new(),
+            reach: Vec::new(),
             links: Vec::new(),
             last_links: Vec::new(),
             moving_kinematic: 0,
@@ -116,6 +117,7 @@ impl<R: Real> Default for Islands<R> {
             sleeping: 0,
             rings: 0,
             pushed: false,
+            waits: false,
             fresh: true,
             changes: 0,
         }
@@ -164,7 +166,8 @@ impl<R: Real> Islands<R> {
         self.awake.resize(len, false);
         self.next.resize(len, 0);
         self.bits.resize(len, 0);
-        self.quiet_secs.resize(len);
+        self.quiet.resize(len);
+        self.reach.resize(len, 0.0);
         self.kinematic.clear();
         self.dynamic = 0;
         for slot in 0..len {
@@ -212,15 +215,13 @@ impl<R: Real> Islands<R> {
     /// Wakes the island of the body in a slot; the time of a body that does not sleep begins anew.
     pub fn wake(&mut self, slot: usize) {
         if !self.is_asleep(slot) {
-            if slot < self.quiet_secs.len() {
-                self.quiet_secs[slot] = R::ZERO;
-            }
+            self.quiet.begin(slot);
             return;
         }
         let mut at = slot;
         loop {
             (self.asleep[at], self.awake[at]) = (false, true);
-            self.quiet_secs[at] = R::ZERO;
+            self.quiet.begin(at);
             self.sleeping -= 1;
             at = self.next[at] as usize;
             if at == slot {
@@ -242,7 +243,7 @@ impl<R: Real> Islands<R> {
                 self.wake(slot);
             }
         }
-        self.quiet_secs.padded_mut().fill(R::ZERO);
+        self.quiet.begin_all();
         self.fresh = true;
     }
 
@@ -290,42 +291,35 @@ impl<R: Real> Islands<R> {
         &mut self,
         bodies: &Bodies<R>,
         runs: &[Range<usize>],
+        pull: Pull,
         dt_secs: f64,
-        gravity: f64,
     ) -> QuietTime {
-        let (zero, dt, window) = (L::zero(), L::lit(dt_secs), L::lit(QUIET_SECS));
-        let per_sec = L::lit(QUIET_RADII_PER_SEC);
-        let fall = if gravity > 0.0 { L::lit(QUIET_FALL_SECS * gravity) } else { L::splat(R::FAR) };
-        let columns = [&bodies.vx, &bodies.vy, &bodies.w, &bodies.radius, &bodies.inv_mass];
-        let columns = columns.each(Column::lanes::<L>);
-        let times = self.quiet_secs.lanes_mut::<L>();
-        let mut quiet_time = QuietTime::default();
-        for at in lanes_in::<L>(runs) {
-            let [vx, vy, w, radius, inv_mass] = columns.each(|column| column[at]);
-            let speed = (vx.abs() + vy.abs()) + radius * w.abs();
-            let quiet = speed.lt((per_sec * radius).min(fall));
-            let before = times[at];
-            let after = L::select(quiet, before + dt, zero);
-            times[at] = after;
-            let ripe = window.le(after) & zero.lt(inv_mass);
-            if ripe.any() {
-                quiet_time.some = true;
-                quiet_time.newly |= (ripe & before.lt(window)).any();
-            }
-        }
         self.fresh = false;
-        quiet_time
+        self.quiet.accumulate::<L>(bodies, runs, pull, dt_secs)
     }
 
-    /// Lets the islands in `runs` fall asleep that may. `fields`: does any act?
+    /// Is there a link whose demand time may meet?
+    pub fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// What links ask of their ends from now on.
+    pub fn take_demands(&mut self, demands: impl Iterator<Item = Demand>) {
+        self.demands.clear();
+        self.demands.extend(demands);
+    }
+
+    /// Lets the islands in `runs` fall asleep that may. `fields`: does any act? `gravity`, m/s².
     pub fn settle(
         &mut self,
         bodies: &mut Bodies<R>,
         manifolds: &Manifolds<R>,
         runs: &[Range<usize>],
         fields: bool,
+        gravity: f64,
     ) {
         self.join(bodies, manifolds, runs);
+        self.ask(bodies, gravity);
         for slot in runs.iter().cloned().flatten() {
             if !self.awake[slot] || bodies.kind(slot) != BodyKind::Dynamic {
                 continue;
@@ -363,13 +357,41 @@ impl<R: Real> Islands<R> {
                 }
             }
         }
-        let window = R::from_f64(QUIET_SECS);
         for slot in runs.iter().cloned().flatten().filter(|&slot| is_dynamic(slot as u32)) {
-            let quiet = window <= self.quiet_secs[slot];
+            let quiet = self.quiet.is_ripe(slot);
             let root = sets.of(slot as u32) as usize;
             bits[root] |= if quiet { 0 } else { RESTLESS };
             bits[root] |= if is_at_rest(bodies, slot) { 0 } else { DRIFTING };
         }
+    }
+
+    /// What links demand: islands with one that is not met are restless. All that hangs together swings no slower than a
+    /// pendulum as long as its links, in 2π·√(length/g).
+    fn ask(&mut self, bodies: &Bodies<R>, gravity: f64) {
+        let demands = std::mem::take(&mut self.demands);
+        self.waits = false;
+        let is_dynamic = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
+        let ends = |demand: &Demand| demand.ends.into_iter().filter(|&end| is_dynamic(end));
+        for end in demands.iter().flat_map(ends) {
+            self.reach[self.sets.of(end) as usize] = 0.0;
+        }
+        for demand in &demands {
+            if let Some(end) = ends(demand).next() {
+                self.reach[self.sets.of(end) as usize] += demand.reach;
+            }
+        }
+        for demand in &demands {
+            for end in ends(demand) {
+                let root = self.sets.of(end) as usize;
+                let swings = if gravity > 0.0 { (self.reach[root] / gravity).sqrt() } else { 0.0 };
+                let needed = demand.quiet_secs.max(std::f64::consts::TAU * swings);
+                if self.quiet.secs(end as usize) < needed {
+                    self.bits[root] |= RESTLESS;
+                    self.waits |= needed.is_finite();
+                }
+            }
+        }
+        self.demands = demands;
     }
 
     fn put_to_sleep(&mut self, bodies: &mut Bodies<R>, slot: usize, root: usize) {
@@ -381,7 +403,7 @@ impl<R: Real> Islands<R> {
             self.next[slot] = std::mem::replace(&mut self.next[root], slot as u32);
         }
         (self.asleep[slot], self.awake[slot]) = (true, false);
-        self.quiet_secs[slot] = -R::FAR;
+        self.quiet.end(slot);
         for column in [&mut bodies.vx, &mut bodies.vy, &mut bodies.w] {
             column[slot] = R::ZERO;
         }

@@ -26,7 +26,7 @@
 //! | [`world`] | the step, top to bottom |
 //! | [`scene`], [`measure`] | named scenes and scene files; times, counts, errors, hash |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`], [`island`] | the stages, and which bodies are at rest together and sleep; none imports another's work, only what it leaves behind |
-//! | [`contact`], [`motion`], [`partition`] | manifolds and carried impulses; the rows and displacements of a step in progress; who belongs together |
+//! | [`contact`], [`motion`], [`partition`], [`seams`] | manifolds and carried impulses; the rows and displacements of a step in progress; who belongs together; what of static outlines their neighbours cover |
 //! | [`body`], [`joint`], [`force`] | columns of bodies and what they are written down as; joints; fields |
 //! | [`shape`], [`settings`] | shapes and their masses; what a run may choose |
 //! | [`mod@column`], [`vec2`], [`pair`], [`clock`] | aligned columns; vectors and rotations; pairs of numbers in files; fixed steps |
@@ -37,18 +37,18 @@
 //! |---|---|---|
 //! | drive | pose of bodies with a pivot | their velocity |
 //! | broad | position, bounding radius, attitude of long bodies; velocity where something is fast | candidate pairs, a < b, in order |
-//! | narrow, where bodies have moved | pose, shape, pairs; velocity where something is fast | manifolds, polygons' world rows |
-//! | prepare, where manifolds are new | manifolds, their impulses, masses | colours, batches, constraints |
+//! | narrow, where bodies have moved | pose, shape, velocity, pairs; which faces of statics neighbours cover | manifolds, polygons' world rows |
+//! | prepare, where manifolds are new | manifolds, masses | a lane of a colour's list per contact, in which its gaps and impulses live from then on |
 //! | joints | pose; joints where they have changed | arms, gaps and angles; batches |
 //! | begin | constraints, velocity | warm start per body, approaches that will bounce |
-//! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement |
+//! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement; of bodies whose fields it cannot follow, by what those do exactly |
 //! | per substep: solve | constraints of joints (hard trees at once), then of contacts, rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
 //! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
 //! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who moved, who is fast |
-//! | continuous, where bodies are fast | pose at the step's beginning, shapes | pose of those that hit |
+//! | continuous, where bodies are fast | pose at the step's beginning, shapes, pairs | pose and velocity of those that meet something |
 //! | measure | pose, velocity | finite check, counts; with bounds on speed or energy: those |
-//! | update_sleep (with `sleep`) | velocity, touching pairs | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
+//! | update_sleep (with `sleep`) | pose, velocity, touching pairs, joints | time quiet; of what falls asleep: velocity 0, runs, pairs at rest |
 //!
 //! Where nothing touches and nothing is joined, predict to finish are one pass over the columns ([`integrate::fly`]). Where nothing has
 //! moved since the last step (a settled pile), narrow, prepare and begin do nothing at all: constraints, impulses
@@ -83,10 +83,10 @@
 //! | bytes per contact | 88 with two points (goal 96), 68 with one (goal 48 for circles: masses, both levers and places would have to go); friction is one row per contact, not per point |
 //! | warm start per body | kept: one pass over contacts per step instead of one per substep, none while nothing moves |
 //! | nothing moved, nothing redone | 239,000 → 171,000: gaps and impulses stay in the constraints, manifolds are not looked at; 178,000 since islands and substep groups came: 69 per contact and push, 50 per contact and relaxation |
-//! | little moved, little redone | polygons/10000 with 100 of 26,000 pairs to look at: only constraints beside those are handed back and prepared, 1.99 → 1.70 ms |
+//! | little moved, little redone | polygons/10000 with 100 of 26,000 pairs to look at: only constraints beside those are prepared, 1.99 → 1.70 ms |
 //! | slots checked once per visit | 239,000 → 215,000 together with closures the compiler had left as calls |
 //! | narrow and broad phase in lanes | kept; manifolds are coded as numbers, so that a batch is written without a branch per lane |
-//! | colours kept between steps | kept for a steady order, not for time: colouring anew where contacts change costs as much (pyramid/100 prepare 0.73 and 0.76 ms against 0.63 and 0.80, polygons/10000 falling 1.47 and 1.55 against 1.25 and 1.65) and needs 1 to 3 colours fewer; the cut into batches is what it costs, all of them where one contact comes or goes |
+//! | contacts keep their lane | kept: one that comes or goes touches its colour alone. Against cutting all batches anew and handing gaps and impulses back to pairs: prepare of spinner/2000 350 → 238 µs, tumbler/2000 383 → 267, pyramid/100 965 → 752, polygons/10000 falling 2690 → 2510; narrow, which now notes who comes and goes, takes 1 to 5 % more |
 //! | cache blocking | lost: polygons/10000 in the order of their rows and shuffled at random solve alike (1.63, 1.69 ms against 1.13, 1.66): the rows of 10,000 bodies are 160 kB, any order of them stays in L2 while constraints stream by |
 //! | substeps per island | kept: a slender stack gets those it stands with unasked (columns/40 12, where it falls with 4 for all), every island its own by a bound on the sag |
 //! | 16 lanes | same bits; slower than 8 without AVX-512 in the target |
@@ -108,7 +108,8 @@
 //!   `yoshida4` than in one call per block ([`force`]).
 //! - Integrating velocities of the lanes in use alone, where a world is smaller than a block: valgrind does not know an
 //!   instruction the compiler makes of it at width 1. Positions are integrated so.
-//! - `array::from_fn` inside a gather: left as a call by the compiler, 12 % of a step.
+//! - `array::from_fn` inside a gather, or a closure called four times in one: left as calls by the compiler, 12 and 7 % of a step.
+//! - Slots of a batch handed to a pass by a function instead of copied in it: passes 15 to 20 % slower.
 
 #![allow(
     rustdoc::private_intra_doc_links,
@@ -137,6 +138,7 @@ pub mod processor;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod scene;
+mod seams;
 pub mod session;
 pub mod settings;
 pub mod shape;

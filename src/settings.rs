@@ -223,6 +223,16 @@ pub enum SettingsError {
         /// What was given, seconds.
         given: f64,
     },
+    /// The inverse of a substep must leave room for what it is multiplied by.
+    #[error("dt must be at least {least:e} s in {precision}, got {given:?}")]
+    ShortDt {
+        /// The precision asked for.
+        precision: Precision,
+        /// What was given, seconds.
+        given: f64,
+        /// The shortest step, seconds.
+        least: f64,
+    },
     /// At least one substep.
     #[error("substeps must be 1 to 1000, got {0}")]
     Substeps(u32),
@@ -267,6 +277,15 @@ pub enum SettingsError {
 }
 
 impl Precision {
+    /// The shortest step, seconds: solvers take 1/h of a substep, down to a thousandth of the step, times lengths and masses,
+    /// which single precision loses above 1e38.
+    pub fn shortest_step_secs(self) -> f64 {
+        match self {
+            Self::F32 => 1e-24,
+            Self::F64 => 1e-200,
+        }
+    }
+
     /// The precision of a scalar.
     pub fn of<R: Real>() -> Self {
         if R::NAME == Self::F64.name() { Self::F64 } else { Self::F32 }
@@ -391,6 +410,10 @@ impl Settings {
         };
         if !(dt_secs > 0.0 && dt_secs.is_finite()) {
             return Err(SettingsError::Dt { precision: self.precision, given: self.dt_secs });
+        }
+        let least = self.precision.shortest_step_secs();
+        if dt_secs < least {
+            return Err(SettingsError::ShortDt { precision: self.precision, given: self.dt_secs, least });
         }
         if !(1..=1000).contains(&self.substeps) {
             return Err(SettingsError::Substeps(self.substeps));

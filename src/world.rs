@@ -10,15 +10,16 @@ mod watchdog;
 
 use crate::body::Bodies;
 use crate::broad::{BroadCounts, BroadPhase};
-use crate::continuous::Continuous;
+use crate::continuous::{Around, Continuous};
+use crate::each::Each as _;
 use crate::force::{Field, Forces};
-use crate::integrate;
+use crate::integrate::{self, Stiff};
 use crate::island::Islands;
 use crate::joint::{JointError, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, Stopwatch, first_non_finite, non_finite_in};
 use crate::motion::{Motion, Plan, Skipped, Warm};
-use crate::narrow::{MovedBodies, Narrow};
+use crate::narrow::{MovedBodies, Narrow, Stride};
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Precision, Settings, Skip};
 use crate::solve::substep_group::Goal;
@@ -48,6 +49,8 @@ struct Laws<R: Real> {
     forces: Forces,
     /// The same, as integrators take them.
     fields: Vec<Field<R>>,
+    /// Bodies for which those are too much in a substep.
+    stiff: Stiff<R>,
     needs: SceneNeeds,
     /// How often other fields were set.
     revision: u64,
@@ -121,7 +124,13 @@ impl<L: Lanes> World<L> {
         forces.check_coupling(bodies.len(), &settings).map_err(SceneError::from)?;
         let mut bodies = bodies;
         bodies.set_fine(settings.is_fine());
-        let laws = Laws { forces, fields: Vec::new(), needs: SceneNeeds::default(), revision: 0 };
+        let laws = Laws {
+            forces,
+            fields: Vec::new(),
+            stiff: Stiff::default(),
+            needs: SceneNeeds::default(),
+            revision: 0,
+        };
         Ok(Self {
             bodies,
             joints,
@@ -169,6 +178,10 @@ impl<L: Lanes> World<L> {
         if !(rounded > L::Elem::ZERO && rounded.is_finite()) {
             return Err(StepError::Dt(dt_secs));
         }
+        let least = self.settings.precision.shortest_step_secs();
+        if dt_secs < least {
+            return Err(StepError::ShortDt { given: dt_secs, least });
+        }
         self.settings.dt_secs = dt_secs;
         self.inspect();
         self.begin_watch();
@@ -201,25 +214,38 @@ impl<L: Lanes> World<L> {
         let stiffness = self.settings.contact_stiffness();
         let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
         let goal = Goal::of(&context, &self.settings, &self.laws.forces);
-        let goal = goal.map(|goal| (goal, self.solving.look(&goal, &self.bodies, &self.joints)));
+        let goal = goal.map(|goal| (goal, self.solving.look(&goal, (&self.bodies, &fields), &self.joints)));
         let seen = self.find_contacts(needs, rounded);
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
-        let free_flight = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
+        let may_fly = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
+        let stiff = self.laws.stiff.begin(integrator, &self.bodies, begun_secs, [plan.h_secs, dt_secs]);
+        let free_flight = may_fly && !stiff;
         let (mut skipped, finite) = if free_flight {
             self.made.forget_poses();
             self.motion.assume_fast_bodies();
-            let fast = self.continuous.begin(self.settings.continuous);
+            let fast = self.continuous.begin(self.settings.continuous, self.broad.pairs().len());
             (integrate::fly::<L>(&plan, &mut self.bodies, fast), true)
         } else {
             let moved = self.move_in_contact(&context, goal, &seen);
-            let fast = self.continuous.begin(self.settings.continuous);
+            let fast = self.continuous.begin(self.settings.continuous, self.broad.pairs().len());
             integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, context.speeds());
             moved
         };
         self.laws.fields = fields;
-        let (skin_m, margin) = (needs.touch(), needs.margin(solver));
-        let (apart, has_moved) = (self.broad.kept_apart(), &mut self.motion.has_moved);
-        self.continuous.stop(&mut self.bodies, skin_m, margin, dt_secs, apart, has_moved);
+        let around = Around {
+            skin_m: needs.touch(),
+            margin: needs.margin(solver),
+            dt_secs,
+            gravity: self.laws.forces.gravity.unwrap_or_default(),
+            pairs: self.broad.pairs(),
+            apart: self.broad.kept_apart(),
+            seams: self.narrow.seams(),
+        };
+        self.continuous.stop(&mut self.bodies, &around, &mut self.motion.has_moved);
+        for slot in self.continuous.met() {
+            self.motion.outlook.any_has_moved = true;
+            self.islands.wake(slot);
+        }
         self.log.stopwatch.lap(Stage::Integrate);
 
         let manifolds = &self.narrow.manifolds;
@@ -228,6 +254,7 @@ impl<L: Lanes> World<L> {
         let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
         self.log.counts.direct_joints = self.solving.direct_joints();
         self.log.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
+        self.log.counts.stiff = skipped.stiff as usize;
         self.check_finite(finite)?;
         self.watch(free_flight)?;
         if self.settings.sleep {
@@ -267,7 +294,10 @@ impl<L: Lanes> World<L> {
                 Some(slots) => self.bodies.refresh_polygons_in(slots),
                 None => self.bodies.refresh_polygons(),
             }
-            self.narrow.collide::<L>(&self.bodies, margin, ahead_secs);
+            let [gx, gy] = self.laws.forces.gravity.unwrap_or_default().each(L::Elem::from_f64);
+            let fallen = [gx, gy].each(|pull| pull * dt_secs * dt_secs);
+            let stride = Stride { secs: dt_secs, fallen };
+            self.narrow.collide::<L>(&self.bodies, margin, ahead_secs, stride);
             self.solving.follow(&mut self.narrow.manifolds, &self.motion);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
@@ -326,7 +356,11 @@ impl<L: Lanes> World<L> {
         let mut skipped = Skipped::default();
         for substep in 0..substeps {
             let plan = Plan { since_secs: plan.h_secs * f64::from(substep), ..plan };
+            let skipped_before = skipped;
+            let stiff = self.laws.stiff.note(&plan, bodies, motion, warm) as u64;
             skipped = integrate::predict::<L>(&plan, bodies, motion, warm);
+            self.laws.stiff.correct(&plan, bodies, motion);
+            skipped.stiff = stiff.max(skipped_before.stiff);
             warm = Warm::Onward;
             self.log.stopwatch.lap(Stage::Integrate);
             solving.solve(context, motion, substep == 0);

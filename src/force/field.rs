@@ -1,5 +1,6 @@
 //! Fields ready for lanes, and what they do to a block of bodies.
 
+use crate::body::Bodies;
 use crate::column::BLOCK;
 use crate::lanes::{Lanes, Real};
 use crate::vec2::{Rot, Vec2};
@@ -85,6 +86,22 @@ pub struct Matter<'a, L> {
     pub inv_mass: &'a [L; BLOCK],
     /// Constant force in x and y, N, where some body has one.
     pub force: Option<(&'a [L; BLOCK], &'a [L; BLOCK])>,
+}
+
+/// The acceleration of one body at a place, metres, with a velocity, m/s, `since_secs` after the step began, m/s².
+pub(crate) fn acceleration_of<R: Real>(
+    fields: &[Field<R>],
+    bodies: &Bodies<R>,
+    slot: usize,
+    [place, velocity]: [[f64; 2]; 2],
+    since_secs: f64,
+) -> [f64; 2] {
+    let vector = |v: [f64; 2]| [Vec2::new(R::from_f64(v[0]), R::from_f64(v[1])); BLOCK];
+    let inv_mass = [bodies.inv_mass[slot]; BLOCK];
+    let force = bodies.force.as_ref().map(|force| [[force[0][slot]; BLOCK], [force[1][slot]; BLOCK]]);
+    let matter = Matter { inv_mass: &inv_mass, force: force.as_ref().map(|[x, y]| (x, y)) };
+    let [pulled, ..] = acceleration::<R>(fields, matter, since_secs, &vector(place), &vector(velocity));
+    [pulled.x.to_f64(), pulled.y.to_f64()]
 }
 
 /// The acceleration of a block of bodies at `position` with `velocity`, `since_secs` after the step began, m/s²: the

@@ -17,6 +17,8 @@
 //!
 //! All but `fly` go over the blocks of [`Motion::runs`]: the others hold nothing that moves.
 //!
+//! Where fields answer faster than a substep can follow, [`Stiff`] advances bodies instead of their scheme.
+//!
 //! Drag, springs and the other fields act at the centroid: attitude follows from constant torque alone.
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
 
@@ -25,6 +27,7 @@ mod position_verlet;
 mod rk4;
 mod scheme;
 mod semi_implicit_euler;
+mod stiff;
 mod velocity_verlet;
 mod yoshida4;
 
@@ -41,6 +44,7 @@ use crate::settings::{Integrator, Skip};
 use crate::vec2::{Rot, Vec2};
 
 pub(crate) use scheme::{Advance, Scheme, Step};
+pub(crate) use stiff::Stiff;
 
 use scheme::{ClosedForm, along, drift};
 

@@ -27,6 +27,8 @@ pub struct Skipped {
     pub rotation: u64,
     /// Pairs that kept their manifold.
     pub manifolds: u64,
+    /// Bodies that were advanced beside their scheme, which could not follow.
+    pub stiff: u64,
 }
 
 /// A body that moved further in a step than it may unseen: where it began, and how far it went. 32 B in f32.

@@ -6,6 +6,8 @@
 //! Which pairs share a batch never changes an answer: loops that run to the batch's largest vertex
 //! count meet only repeated vertices beyond a lane's own.
 //!
+//! Pairs of an outline of which neighbours cover something are met one by one (`seamed.rs`).
+//!
 //! A pair is looked at when it is new or one of its bodies has moved ([`MovedBodies`]); else it keeps its manifold.
 
 mod box_box;
@@ -13,7 +15,9 @@ mod circle_box;
 mod circle_circle;
 mod circle_polygon;
 mod clip;
+mod passing;
 mod polygon_polygon;
+mod seamed;
 
 use crate::body::{Bodies, Form, fine_difference};
 use crate::each::Each as _;
@@ -21,9 +25,12 @@ use crate::each::Each as _;
 use crate::column::{Column, PAD};
 use crate::contact::{Code, Manifolds};
 use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real};
+use crate::seams::Seams;
 use crate::vec2::{Rot, Vec2};
 
 use polygon_polygon::Hull;
+
+pub use passing::Stride;
 
 /// Where `WIDTH` bodies are and what they are like.
 #[derive(Clone, Copy, Debug)]
@@ -119,6 +126,9 @@ pub struct Narrow<R: Real> {
     few: bool,
     /// Rows of one batch, lane by lane.
     scratch: [[R; ROW]; 16],
+    /// What of static outlines is covered, and the places of pairs to look at of which one body is such a one.
+    seams: Seams,
+    seamed: Vec<u32>,
     /// The manifolds of all pairs.
     pub manifolds: Manifolds<R>,
 }
@@ -135,6 +145,8 @@ impl<R: Real> Default for Narrow<R> {
             is_wanted: Vec::new(),
             few: false,
             scratch: [[R::ZERO; ROW]; 16],
+            seams: Seams::default(),
+            seamed: Vec::new(),
             manifolds: Manifolds::default(),
         }
     }
@@ -147,7 +159,7 @@ impl<R: Real> Narrow<R> {
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.rebuild(bodies, pairs);
         self.choose(bodies.len(), MovedBodies::All);
-        self.collide::<L>(bodies, margin, R::ZERO);
+        self.collide::<L>(bodies, margin, R::ZERO, Stride { secs: R::ZERO, fallen: [R::ZERO; 2] });
         self.manifolds.refresh();
     }
 
@@ -169,7 +181,8 @@ impl<R: Real> Narrow<R> {
         for (number, todo) in self.todo.iter_mut().enumerate() {
             todo.fill(&self.manifolds, number, has_moved);
         }
-        let chosen = self.todo.iter().map(|todo| todo.len).sum::<usize>();
+        self.set_seamed_apart();
+        let chosen = self.todo.iter().map(|todo| todo.len).sum::<usize>() + self.seamed.len();
         self.few = 4 * chosen < bodies;
         for slot in self.wanted.drain(..) {
             self.is_wanted[slot as usize] = false;
@@ -195,7 +208,15 @@ impl<R: Real> Narrow<R> {
 
     /// Finds the contacts of the pairs chosen; see [`Narrow::run`]. The margin of a pair is wider by what its
     /// centroids can close in `ahead_secs`, up to half the smaller one's radius: a contact is there before bodies overlap.
-    pub fn collide<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, margin: R, ahead_secs: R) {
+    /// What is apart now and will not meet in a stride is no contact (`passing.rs`).
+    pub fn collide<L: Lanes<Elem = R>>(
+        &mut self,
+        bodies: &Bodies<R>,
+        margin: R,
+        ahead_secs: R,
+        stride: Stride<R>,
+    ) {
+        self.meet_seamed(bodies, margin, ahead_secs);
         if self.todo.iter().all(|todo| todo.len == 0) {
             return;
         }
@@ -207,11 +228,11 @@ impl<R: Real> Narrow<R> {
         if ahead_secs > R::ZERO {
             self.write_speeds::<L>(bodies);
         }
-        let margin = Margin { still: L::splat(margin), ahead: L::splat(ahead_secs) };
+        let margin = Margin { still: L::splat(margin), ahead: L::splat(ahead_secs), stride };
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
-        self.run_bucket::<L>(&cc, margin, |a, b, _, margin| circle_circle::collide(a, b, margin));
-        self.run_bucket::<L>(&cb, margin, |a, b, _, margin| circle_box::collide(a, b, margin));
-        self.run_bucket::<L>(&bb, margin, |a, b, _, margin| box_box::collide(a, b, margin));
+        self.run_bucket::<L>(bodies, &cc, margin, |a, b, _, margin| circle_circle::collide(a, b, margin));
+        self.run_bucket::<L>(bodies, &cb, margin, |a, b, _, margin| circle_box::collide(a, b, margin));
+        self.run_bucket::<L>(bodies, &bb, margin, |a, b, _, margin| box_box::collide(a, b, margin));
         // Loops over edges are unrolled to the next of these: a third fewer instructions than counted ones.
         match bodies.polygons.max_count() {
             0..=4 => self.run_edged::<L, 4>(bodies, [&cp, &bp, &pp], margin),
@@ -230,13 +251,13 @@ impl<R: Real> Narrow<R> {
     ) {
         let hull =
             |slots: &[u32]| Hull::<L>::gather(&bodies.polygons.world, &polygon_index::<L, R>(bodies, slots));
-        self.run_bucket::<L>(cp, margin, |a, b, [_, ib], margin| {
+        self.run_bucket::<L>(bodies, cp, margin, |a, b, [_, ib], margin| {
             circle_polygon::collide(a, b, &hull(ib), EDGES, margin)
         });
-        self.run_bucket::<L>(bp, margin, |a, b, [_, ib], margin| {
+        self.run_bucket::<L>(bodies, bp, margin, |a, b, [_, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &Hull::of_box(a), &hull(ib), margin)
         });
-        self.run_bucket::<L>(pp, margin, |a, b, [ia, ib], margin| {
+        self.run_bucket::<L>(bodies, pp, margin, |a, b, [ia, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &hull(ia), &hull(ib), margin)
         });
     }
@@ -248,13 +269,13 @@ impl<R: Real> Narrow<R> {
 
     /// All manifolds, and the places of the pairs last looked at.
     pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = u32>) {
-        (&mut self.manifolds, looked_at(&self.todo))
+        (&mut self.manifolds, looked_at(&self.todo, &self.seamed))
     }
 
     /// The deepest overlap of the pairs last looked at, negative, metres; 0 where there is none. Read out of what was
     /// found, as few steps ask (noted while looking it cost all of them 2 to 7 % of this phase).
     pub fn deepest(&self) -> f64 {
-        let places = looked_at(&self.todo).map(|place| place as usize);
+        let places = looked_at(&self.todo, &self.seamed).map(|place| place as usize);
         let gaps = places.flat_map(|at| &self.manifolds.gaps()[at][..self.manifolds.code(at).points()]);
         gaps.fold(0.0, |least, gap| gap.to_f64().min(least))
     }
@@ -307,6 +328,7 @@ impl<R: Real> Narrow<R> {
     #[inline(always)]
     fn run_bucket<L: Lanes<Elem = R>>(
         &mut self,
+        bodies: &Bodies<R>,
         todo: &Todo,
         margin: Margin<L>,
         collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
@@ -321,8 +343,12 @@ impl<R: Real> Narrow<R> {
             if self.is_fine {
                 (a.x, b.x) = (Vec2::zero(), self.to_b_finely([a.x, b.x], slots));
             }
-            let margin = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
-            let found = collide(&a, &b, slots, margin);
+            let within = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
+            let mut found = collide(&a, &b, slots, within);
+            let apart = found.hits[0] & L::zero().lt(found.separations[0]);
+            if apart.any() && margin.stride.secs > R::ZERO {
+                passing::leave_out(&mut found, bodies, slots, apart.bits(), margin.stride);
+            }
             if found.hits[0].any() {
                 self.keep(&a, &b, &found, places);
             } else {
@@ -358,11 +384,13 @@ impl<R: Real> Narrow<R> {
 
 /// How close is close enough.
 #[derive(Clone, Copy, Debug)]
-struct Margin<L> {
+struct Margin<L: Lanes> {
     /// Metres, for bodies at rest.
     still: L,
     /// Seconds of approach that are added.
     ahead: L,
+    /// How far bodies may go.
+    stride: Stride<L::Elem>,
 }
 
 impl<L: Lanes> Margin<L> {
@@ -409,6 +437,11 @@ impl Todo {
             (self.a[chosen], self.b[chosen], self.place[chosen]) = (a, b, at as u32);
             chosen += usize::from(look);
         }
+        self.end(chosen, manifolds);
+    }
+
+    /// So many pairs are all: padding follows.
+    fn end<R: Real>(&mut self, chosen: usize, manifolds: &Manifolds<R>) {
         self.len = chosen;
         let padding = chosen..chosen.next_multiple_of(16);
         self.a[padding.clone()].fill(0);
@@ -417,8 +450,8 @@ impl Todo {
     }
 }
 
-fn looked_at(todo: &[Todo; 6]) -> impl Iterator<Item = u32> {
-    todo.iter().flat_map(|todo| &todo.place[..todo.len]).copied()
+fn looked_at<'a>(todo: &'a [Todo; 6], seamed: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    todo.iter().flat_map(|todo| &todo.place[..todo.len]).chain(seamed).copied()
 }
 
 /// Where the polygons of `WIDTH` bodies are; the world, in padding lanes, has polygon 0 and is masked away.

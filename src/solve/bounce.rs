@@ -12,6 +12,8 @@
 use super::batches::{Ends, Visit};
 use super::block::{answer, cross, non_negative, part};
 use super::constraint::{Constraint, Normals, Side};
+use super::joint::JointStream;
+use super::stream::Stream;
 use crate::lanes::{LaneMask, Lanes};
 
 /// Bounces of one point within a step that are followed one by one.
@@ -49,11 +51,22 @@ pub(crate) struct Bouncing<L: Lanes> {
     pub(super) looked: bool,
     /// Something bounces in this step.
     pub(super) any: bool,
+    /// Rounds of joints and contacts by which velocities settle after an impact on what joints hold.
+    pub(super) rounds: u32,
+    /// Per slot, whether joints hold its body.
+    jointed: Vec<bool>,
 }
 
 impl<L: Lanes> Default for Bouncing<L> {
     fn default() -> Self {
-        Self { bounces: Bounces::default(), displaced: Vec::new(), looked: false, any: false }
+        Self {
+            bounces: Bounces::default(),
+            displaced: Vec::new(),
+            looked: false,
+            any: false,
+            rounds: 0,
+            jointed: Vec::new(),
+        }
     }
 }
 
@@ -75,6 +88,57 @@ impl<L: Lanes> Bounces<L> {
     #[inline(always)]
     fn at<const POINTS: usize>(&mut self, at: usize) -> &mut [Rebound<L>] {
         if POINTS == 2 { &mut self.two[at] } else { &mut self.one[at] }
+    }
+}
+
+/// Rounds of joints and contacts after an impact on what joints hold: one round leaves a share of what the other took, cos² of
+/// the angle between them.
+const ROUNDS: u32 = 12;
+
+impl<L: Lanes> Bouncing<L> {
+    /// As a step begins: rounds where something meets a body that joints hold. `rows`: velocities as the step begins.
+    pub(super) fn look_for_impacts(
+        &mut self,
+        stream: &mut Stream<L>,
+        joints: &JointStream<L>,
+        rows: &[[L::Elem; 4]],
+        [threshold, dt_secs]: [f64; 2],
+    ) {
+        self.jointed.clear();
+        self.jointed.resize(rows.len(), false);
+        joints.mark(&mut self.jointed);
+        let (threshold, dt_secs) = (L::lit(threshold), L::lit(dt_secs));
+        let mut pass = Impacts { rows, jointed: &self.jointed, threshold, dt_secs, any: false };
+        stream.visit(&mut pass);
+        self.rounds = if pass.any { ROUNDS } else { 0 };
+    }
+}
+
+/// Looks for what meets a body that joints hold within a step.
+struct Impacts<'a, L: Lanes> {
+    rows: &'a [[L::Elem; 4]],
+    jointed: &'a [bool],
+    threshold: L,
+    dt_secs: L,
+    any: bool,
+}
+
+impl<L: Lanes> Visit<L> for Impacts<'_, L> {
+    fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
+        let is_held = |lane: usize| [ends.a, ends.b].iter().any(|slots| self.jointed[slots[lane] as usize]);
+        if self.any || !(0..L::WIDTH).any(is_held) {
+            return;
+        }
+        let (a, b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
+        let speeds = Normals::begin(c, &a, &b);
+        for point in &c.points {
+            let speed = speeds.velocity(point);
+            let meets = speed.lt(-self.threshold)
+                & point.separation.lt(-(speed * self.dt_secs))
+                & point.velocity_impulse.lt(L::lit(-0.5) * speed)
+                & L::zero().lt(point.mass);
+            self.any |= crate::lanes::set_lanes(meets.bits()).any(is_held);
+        }
     }
 }
 

@@ -214,6 +214,15 @@ fn turn<L: Lanes>(arm: Vec2<L>, angle: L) -> Vec2<L> {
     arm.turned_by(s) + arm * (c - L::one())
 }
 
+/// Changes one lane of two values.
+fn set_lane<L: Lanes>(of: &mut [L; 2], lane: usize, values: [f64; 2]) {
+    for (lanes, value) in of.iter_mut().zip(values) {
+        let mut all = lanes.to_array();
+        all[lane] = L::Elem::from_f64(value);
+        *lanes = L::load(&all);
+    }
+}
+
 /// One lane per item, the rest zeros.
 fn lanes<L: Lanes, T>(items: &[T], of: impl Fn(&T) -> L::Elem) -> L {
     let mut values = [L::Elem::ZERO; 16];

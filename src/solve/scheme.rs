@@ -26,6 +26,8 @@ pub(crate) struct Substep<'a, L: Lanes> {
     pub behind: bool,
     /// Something is deep, see `deep.rs`.
     pub deep: bool,
+    /// Further rounds of joints and contacts, where something meets a body that joints hold; see `bounce.rs`.
+    pub rounds: u32,
     /// Of contacts whose step has become shorter: their stiffness over what it will be; 1 to the bit where all steps have
     /// one length.
     pub softened: f64,

@@ -12,7 +12,8 @@
 //! Which contacts carry something alone is found by peeling: a body with one contact is given to the body below it, with
 //! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What has its centre
 //! of mass not above its contact's points adds nothing, as on a single point: no stiffness keeps it from tipping.
-//! Weights are those of uniform gravity, not the impulses that contacts hold: they are right from the first step on,
+//! Weights are those of all fields and forces that act on bodies at rest where they are, not the impulses that contacts hold:
+//! they are right from the first step on,
 //! and an impact asks for nothing.
 
 use super::batches::{Ends, Visit};
@@ -20,6 +21,7 @@ use super::constraint::Constraint;
 use super::substep_group::Goal;
 use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
+use crate::force::{Field, acceleration_of};
 use crate::lanes::{Lanes, Real};
 
 /// A body with joints has at least so many contacts: more than can be peeled off it.
@@ -46,9 +48,11 @@ struct Part {
     contacts: u32,
     /// Their numbers, joined by exclusive or: of one that is left, its number.
     which: u32,
-    /// kg.
-    mass: f64,
-    /// Mass times place, kg·m.
+    /// What pulls it and what it carries, N.
+    weight: [f64; 2],
+    /// Sum of the magnitudes of those, N.
+    load: f64,
+    /// Magnitude times place, N·m.
     moment: [f64; 2],
     /// The largest Σ N·h/c of one substep over what stands on it.
     sum: f64,
@@ -74,7 +78,7 @@ impl SlenderStacks {
     pub(super) fn look<R: Real>(
         &mut self,
         goal: &Goal,
-        bodies: &Bodies<R>,
+        (bodies, fields): (&Bodies<R>, &[Field<R>]),
         joined: impl Iterator<Item = [u32; 2]>,
         needs: &mut Vec<f64>,
     ) {
@@ -83,7 +87,7 @@ impl SlenderStacks {
         if !self.edges.iter().any(|edge| edge.turn > 0.0) {
             return;
         }
-        self.weigh(bodies, joined);
+        self.weigh(bodies, fields, joined);
         let movable = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let one_left = |slot: &usize| self.parts[*slot].contacts == 1 && movable(*slot);
         self.loose.clear();
@@ -98,7 +102,7 @@ impl SlenderStacks {
             }
             let edge = self.edges[part.which as usize];
             let below = edge.slots[usize::from(edge.slots[0] == slot)] as usize;
-            let sum = part.sum + goal.leaning(edge.moment(slot, &part, bodies, goal.gravity), edge.turn);
+            let sum = part.sum + goal.leaning(edge.moment(slot, &part, bodies), edge.turn);
             needs[slot as usize] = sum.sqrt();
             self.parts[slot as usize].contacts = 0;
             if !movable(below) {
@@ -107,7 +111,8 @@ impl SlenderStacks {
             let onto = &mut self.parts[below];
             onto.contacts -= 1;
             onto.which ^= part.which;
-            onto.mass += part.mass;
+            onto.load += part.load;
+            onto.weight = [0, 1].each(|k| onto.weight[k] + part.weight[k]);
             onto.moment = [0, 1].each(|k| onto.moment[k] + part.moment[k]);
             onto.sum = onto.sum.max(sum);
             if onto.contacts == 1 {
@@ -117,7 +122,12 @@ impl SlenderStacks {
     }
 
     /// Each body alone, and how many contacts it has.
-    fn weigh<R: Real>(&mut self, bodies: &Bodies<R>, joined: impl Iterator<Item = [u32; 2]>) {
+    fn weigh<R: Real>(
+        &mut self,
+        bodies: &Bodies<R>,
+        fields: &[Field<R>],
+        joined: impl Iterator<Item = [u32; 2]>,
+    ) {
         self.parts.clear();
         self.parts.resize(bodies.len(), Part::default());
         // Bodies may have gone since.
@@ -135,9 +145,11 @@ impl SlenderStacks {
         for (slot, part) in self.parts.iter_mut().enumerate() {
             let inv_mass = bodies.inv_mass[slot].to_f64();
             if inv_mass > 0.0 && part.contacts > 0 {
-                let mass = 1.0 / inv_mass;
-                part.mass = mass;
-                part.moment = [bodies.x[slot], bodies.y[slot]].each(|at| mass * at.to_f64());
+                let place = bodies.place(slot);
+                let pull = acceleration_of(fields, bodies, slot, [place, [0.0; 2]], 0.0);
+                part.weight = pull.each(|pull| pull / inv_mass);
+                part.load = part.weight[0].hypot(part.weight[1]);
+                part.moment = place.each(|at| part.load * at);
             }
         }
     }
@@ -145,21 +157,24 @@ impl SlenderStacks {
 
 impl Edge {
     /// N·h of what `slot` carries, N·m per radian; 0 where that does not stand on the points.
-    fn moment<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>, gravity: [f64; 2]) -> f64 {
+    fn moment<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>) -> f64 {
+        if part.load <= 0.0 {
+            return 0.0;
+        }
         let a = self.slots[0] as usize;
-        let from_a = |k: usize, at: R| part.moment[k] / part.mass - at.to_f64();
-        let center = [from_a(0, bodies.x[a]), from_a(1, bodies.y[a])];
+        let from_a = |k: usize| part.moment[k] / part.load - bodies.place(a)[k];
+        let center = [from_a(0), from_a(1)];
         let ([nx, ny], [tx, ty]) = (self.normal, [-self.normal[1], self.normal[0]]);
         let along = |v: [f64; 2]| v[0] * nx + v[1] * ny;
         let across = |v: [f64; 2]| v[0] * tx + v[1] * ty;
-        let (ahead, pull) = (along(center) - self.ahead, along(gravity));
+        let (ahead, pull) = (along(center) - self.ahead, along(part.weight));
         // Where the plumb line through the centre of mass meets the line of the points.
-        let plumb = across(center) - across(gravity) / pull * ahead;
+        let plumb = across(center) - across(part.weight) / pull * ahead;
         let [first, last] = self.aside;
         let stands = first.min(last) < plumb && plumb < first.max(last);
         // Away from what carries it.
         let away = if self.slots[0] == slot { -1.0 } else { 1.0 };
-        if stands && away * ahead > 0.0 { (-away * part.mass * pull).max(0.0) * (away * ahead) } else { 0.0 }
+        if stands && away * ahead > 0.0 { (-away * pull).max(0.0) * (away * ahead) } else { 0.0 }
     }
 }
 

@@ -184,10 +184,17 @@ impl<L: Lanes> ContactSolver<L> for Soft {
             joints.relax(rows, substep.motion.moved.fours(), &how);
             joints.solve_directly(rows, None);
         }
-        if substep.context.needs.friction {
-            substep.stream.visit(&mut Relax::<L, true> { rows, per_sec });
-        } else {
-            substep.stream.visit(&mut Relax::<L, false> { rows, per_sec });
+        for round in 0..=substep.rounds {
+            if let Some(joints) = &mut substep.joints
+                && round > 0
+            {
+                joints.settle(rows, &how);
+            }
+            if substep.context.needs.friction {
+                substep.stream.visit(&mut Relax::<L, true> { rows, per_sec });
+            } else {
+                substep.stream.visit(&mut Relax::<L, false> { rows, per_sec });
+            }
         }
     }
 }

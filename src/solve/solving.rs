@@ -12,6 +12,7 @@ use super::{SolverContext, avbd, carries_impulses, deep, pushes};
 use crate::body::{Bodies, BodyKind};
 use crate::contact::{ContactRow, Manifolds};
 use crate::each::Each as _;
+use crate::force::Field;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::motion::{Motion, Warm};
@@ -61,7 +62,12 @@ impl<L: Lanes> Default for Solving<L> {
 
 impl<L: Lanes> Solving<L> {
     /// As a step begins: reads what contacts carry, and which stand on each other, if it is time to; says whether it was.
-    pub fn look(&mut self, goal: &Goal, bodies: &Bodies<L::Elem>, joints: &Joints<L::Elem>) -> bool {
+    pub fn look(
+        &mut self,
+        goal: &Goal,
+        bodies: (&Bodies<L::Elem>, &[Field<L::Elem>]),
+        joints: &Joints<L::Elem>,
+    ) -> bool {
         let looked = self.substep_groups.looks(goal);
         if looked {
             if goal.max_sag.is_some() {
@@ -237,11 +243,22 @@ impl<L: Lanes> Solving<L> {
         self.in_rows = context.solver == Solver::Avbd;
         let same_length = self.lengths.begin(context);
         let may_bounce = context.needs.restitution && pushes(context.solver) && motion.outlook.may_bounce;
-        let might_bounce = std::mem::replace(&mut self.bouncing.looked, may_bounce);
+        let jointed = pushes(context.solver) && motion.outlook.may_bounce && !self.joints.is_empty();
+        let may_hit = jointed && self.stream.batches() != [0; 2];
+        let looks = may_bounce || may_hit;
+        let might_bounce = std::mem::replace(&mut self.bouncing.looked, looks);
         self.bouncing.any = may_bounce && self.note_approaches(context, bodies, manifolds, motion);
+        self.bouncing.rounds = 0;
+        if may_hit {
+            if !may_bounce {
+                motion.load::<L>(context.plan, bodies);
+            }
+            let (rows, bounds) = (motion.velocity.fours(), [context.bounce_threshold(), context.dt_secs]);
+            self.bouncing.look_for_impacts(&mut self.stream, &self.joints, rows, bounds);
+        }
         let carries = carries_impulses(context.solver);
         // Joints are placed anew in each step; where approaches were looked at the rows are theirs.
-        let settled = self.joints.is_empty() && !might_bounce && !may_bounce && same_length;
+        let settled = self.joints.is_empty() && !might_bounce && !looks && same_length;
         if carries && settled && self.until_summed > 0 {
             self.until_summed -= 1;
             return Warm::Carried;
@@ -316,6 +333,7 @@ impl<L: Lanes> Solving<L> {
             first,
             behind: !first || self.behind,
             deep: self.deep.steps > 0,
+            rounds: self.bouncing.rounds,
             softened: self.lengths.softened(context.dt_secs),
             joint_scale: self.lengths.joint_scale,
         };

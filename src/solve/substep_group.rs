@@ -31,6 +31,7 @@ use crate::body::{Bodies, BodyKind};
 use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
+use crate::force::Field;
 use crate::lanes::{Lanes, Real};
 use crate::partition::Sets;
 
@@ -169,7 +170,12 @@ impl<R: Real> SubstepGroups<R> {
     }
 
     /// What stacks need, by what has been noted. `joints`: the slots they join.
-    pub fn weigh(&mut self, goal: &Goal, bodies: &Bodies<R>, joints: impl Iterator<Item = [u32; 2]>) {
+    pub fn weigh(
+        &mut self,
+        goal: &Goal,
+        bodies: (&Bodies<R>, &[Field<R>]),
+        joints: impl Iterator<Item = [u32; 2]>,
+    ) {
         self.slender_stacks.look(goal, bodies, joints, &mut self.slender_stack_needs);
     }
 

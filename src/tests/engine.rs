@@ -22,6 +22,7 @@ mod engine {
     mod fields;
     mod fuzz;
     mod homes;
+    mod impacts;
     mod interface;
     mod joints;
     mod motion_laws;
@@ -34,9 +35,11 @@ mod engine {
     mod refusals;
     mod rooms;
     mod scenes;
+    mod seams;
     mod shapes;
     mod sleep;
     mod solvers;
+    mod stiff;
     mod waking;
     mod watchdog;
 }

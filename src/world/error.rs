@@ -59,6 +59,14 @@ pub enum StepError {
     /// Steps have a positive, finite length.
     #[error("dt must be positive and finite, got {0:?}")]
     Dt(f64),
+    /// A step too short for the precision; see [`Precision::shortest_step_secs`](crate::settings::Precision::shortest_step_secs).
+    #[error("dt must be at least {least:e} s, got {given:?}")]
+    ShortDt {
+        /// Seconds.
+        given: f64,
+        /// Seconds.
+        least: f64,
+    },
 }
 
 /// Why a world could not be built.
@@ -93,7 +101,7 @@ impl StepError {
     pub fn slot(&self) -> Option<usize> {
         match *self {
             Self::NonFinite { slot, .. } | Self::Runaway { slot, .. } | Self::Gain { slot, .. } => Some(slot),
-            Self::Dt(_) => None,
+            Self::Dt(_) | Self::ShortDt { .. } => None,
         }
     }
 }

@@ -40,6 +40,7 @@ impl<L: Lanes> World<L> {
         if self.bodies.force.is_some() {
             self.laws.fields.insert(0, Field::PerBody);
         }
+        self.laws.stiff.look_over(&self.bodies, &self.laws.forces, &self.laws.fields);
         let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
         let [gx, gy] = self.laws.forces.gravity.unwrap_or_default();
         self.laws.needs = SceneNeeds {
@@ -50,6 +51,7 @@ impl<L: Lanes> World<L> {
         };
         self.motion.resize(&self.bodies);
         self.motion.assume_fast_bodies();
+        self.narrow.look_over(&self.bodies);
         self.continuous.look_over(&self.bodies);
         self.look_over_islands();
         self.made.forget_poses();

@@ -11,12 +11,16 @@
 //! wakes. Such a step is never a still one, so that new constraints and the warm start are made.
 
 use super::World;
-use crate::body::{BodyError, BodyId};
+use crate::body::{Bodies, BodyError, BodyId};
 use crate::each::Each as _;
 use crate::force::Forces;
-use crate::island::Islands;
-use crate::lanes::Lanes;
+use crate::island::{Demand, Islands, Pull};
+use crate::joint::{Joint, JointKind, Joints};
+use crate::lanes::{Lanes, Real};
 use crate::scene::SceneError;
+
+/// Steps from one look to the next at islands whose links want them to be quiet for longer.
+const LOOK_STEPS: u64 = 16;
 
 impl<L: Lanes> World<L> {
     /// Takes in which bodies there are, and which of them hang together without touching.
@@ -81,11 +85,17 @@ impl<L: Lanes> World<L> {
 
     /// After a step: who has been quiet for long enough falls asleep. `changed`: contacts came or went.
     pub(super) fn update_sleep(&mut self, dt_secs: f64, changed: bool) {
+        let Self { laws, bodies, joints, islands, .. } = self;
         let (runs, manifolds) = (&self.motion.runs, &self.narrow.manifolds);
-        let quiet_time =
-            self.islands.accumulate_quiet_time::<L>(&self.bodies, runs, dt_secs, self.laws.needs.gravity);
-        if quiet_time.newly || (quiet_time.some && changed) {
-            self.islands.settle(&mut self.bodies, manifolds, runs, !self.laws.fields.is_empty());
+        let gravity = laws.needs.gravity;
+        let pull = Pull { gravity, spring: laws.forces.spring.map_or(0.0, |spring| spring.stiffness) };
+        let quiet_time = islands.accumulate_quiet_time::<L>(bodies, runs, pull, dt_secs);
+        // What a drive holds still now it may move in a moment.
+        let again = changed || (islands.waits() && self.log.steps.is_multiple_of(LOOK_STEPS));
+        if laws.forces.drive.is_none() && (quiet_time.newly || (quiet_time.some && again)) {
+            let substep_secs = dt_secs / f64::from(self.settings.substeps);
+            islands.take_demands(demands_of(joints, bodies, substep_secs));
+            islands.settle(bodies, manifolds, runs, !laws.fields.is_empty(), gravity);
         }
         self.log.counts.sleeping = self.islands.sleeping();
         self.log.counts.islands = self.islands.len();
@@ -152,4 +162,35 @@ impl<L: Lanes> World<L> {
     pub fn islands(&self) -> &Islands<L::Elem> {
         &self.islands
     }
+}
+
+/// What joints demand before their bodies may sleep: motors that turn, for ever; springs, a period of theirs.
+fn demands_of<R: Real>(
+    joints: &Joints<R>,
+    bodies: &Bodies<R>,
+    substep_secs: f64,
+) -> impl Iterator<Item = Demand> {
+    joints.living().map(move |(place, joint)| {
+        let spring = match &joint.kind {
+            JointKind::Distance(distance) => distance.spring,
+            JointKind::Weld(weld) => weld.spring,
+            JointKind::Revolute(_) => None,
+        };
+        let period = spring.map_or(0.0, |spring| 1.0 / spring.hertz);
+        let drives = drives(joint, joints.held_at(place).drive.to_f64(), substep_secs);
+        let ends = joint.bodies.each(BodyId::slot);
+        let [a, b] = ends.each(|slot| bodies.place(slot));
+        Demand {
+            ends: ends.each(|slot| slot as u32),
+            quiet_secs: if drives { f64::INFINITY } else { period },
+            reach: (b[0] - a[0]).hypot(b[1] - a[1]),
+        }
+    })
+}
+
+/// Is there a motor that turns, or holds against what it could push away? One that gives all its torque is stalled.
+fn drives(joint: &Joint, drive: f64, substep_secs: f64) -> bool {
+    let JointKind::Revolute(revolute) = &joint.kind else { return false };
+    let stalls = |max_torque: f64| drive.abs() >= 0.999 * max_torque * substep_secs;
+    revolute.motor.is_some_and(|motor| motor.speed != 0.0 && !stalls(motor.max_torque))
 }

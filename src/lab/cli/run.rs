@@ -270,6 +270,7 @@ fn counted(counts: &Counts) -> Value {
         "islands": counts.islands,
         "substeps": counts.substeps,
         "direct_joints": counts.direct_joints,
+        "stiff": counts.stiff,
         "skipped": skipped,
     })
 }

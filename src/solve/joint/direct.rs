@@ -1,12 +1,13 @@
 //! A direct solve for chains and trees of joints whose masses differ much.
 //!
 //! One visit a substep carries a weight's pull one joint further; a chain of 50 links that carries 50,000 times a link
-//! needs thousands, and without them impulses swing up until numbers end. Where the pins of some bodies make up a tree
-//! whose masses are too far apart for its length (`trees`), all its points are therefore solved at once after the pass
-//! over all joints, without softness: (J·M⁻¹·Jᵀ)·Δλ = −(J·v + bias), in `f64`. The matrix has a 2×2 block for each two
-//! pins that share a body; pins are eliminated from the leaves to the root, so that what is left of a pin's neighbours
+//! needs thousands, and without them impulses swing up until numbers end. Where the rigid joints of some bodies – pins, welds,
+//! rods – make up a tree whose masses are too far apart for its length (`trees`), all its rows are therefore solved at once after the pass
+//! over all joints, without softness: (J·M⁻¹·Jᵀ)·Δλ = −(J·v + bias), in `f64`. The matrix has a 3×3 block for each two
+//! joints that share a body; they are eliminated from the leaves to the root, so that what is left of a pin's neighbours
 //! already has blocks, and no others come to be (Davis, Direct Methods for Sparse Linear Systems, 2006, §4.1: a perfect
-//! order). Work grows with the number of joints. Rows of angles are left to the pass before.
+//! order). Work grows with the number of joints. Motors, limits and
+//! springs are left to the pass before.
 //!
 //! A light link under a heavy pull swings across it with ω² up to T/(m·L), faster than substeps can see, and directions
 //! are those of the substep's beginning: beyond ωh = 2 that blows up, however exactly impulses are solved. So a link
@@ -28,16 +29,19 @@
 //!
 //! Loops are not trees: there, and where a body has more than a few pins, the pass over all joints is all there is.
 
+mod link;
 mod trees;
 
 use super::Stiffness;
-use super::pin::{Pin, Response};
+use super::pin::Pin;
+use super::rod::Rod;
 use super::stream::Batches;
 use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::Side;
 use crate::vec2::Vec2;
+use link::{Kind, Link};
 use trees::Trees;
 
 /// A link's inertia that becomes this much greater in a solve slows its spin.
@@ -48,12 +52,15 @@ const RUBBED: f64 = 0.5;
 /// Neighbours that turn apart by as much in a substep lose all of their difference; by half as much, 1/16 of it.
 const FOLLOWED_RAD: f64 = 1.0 / 12.0;
 
-/// 2×2, by rows.
-type Block = [[f64; 2]; 2];
+/// A number per row of a joint.
+type Triple = [f64; 3];
+/// 3×3, by rows.
+type Block = [Triple; 3];
 
-/// A pin of a tree.
+/// A joint of a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
+    kind: Kind,
     /// Batch and lane.
     at: [usize; 2],
     slots: [usize; 2],
@@ -94,9 +101,9 @@ pub(super) struct Direct {
     /// Pins after each that share a body with it: where in `nodes`, and their block.
     later: Vec<Vec<(usize, Block)>>,
     /// Of each pin: its own block, and what is to be taken from its velocity.
-    own: Vec<(Block, [f64; 2])>,
-    answer: Vec<[f64; 2]>,
-    pins: Vec<Pin<f64>>,
+    own: Vec<(Block, Triple)>,
+    answer: Vec<Triple>,
+    links: Vec<Link>,
     /// By slot.
     members: Vec<Member>,
 }
@@ -112,11 +119,24 @@ impl Direct {
         self.later.clear();
     }
 
-    /// Finds the trees among the pins in these batches that masses make hard.
-    pub(super) fn look_over<L: Lanes>(&mut self, pins: &Batches<Pin<L>>, bodies: &Bodies<L::Elem>) {
-        let ends = pins.ends(L::WIDTH);
+    /// Finds the trees among the rigid joints in these batches that masses make hard.
+    pub(super) fn look_over<L: Lanes>(
+        &mut self,
+        pins: &Batches<Pin<L>>,
+        rods: &Batches<Rod<L>>,
+        bodies: &Bodies<L::Elem>,
+    ) {
+        let pin = |(at, slots): ([usize; 2], [usize; 2])| {
+            let welded = pins.link(at[0]).row().is_rigid(at[1]);
+            Node { kind: if welded { Kind::Weld } else { Kind::Pin }, at, slots }
+        };
+        let rod = |(at, slots): ([usize; 2], [usize; 2])| {
+            rods.link(at[0]).row().is_rigid(at[1]).then_some(Node { kind: Kind::Rod, at, slots })
+        };
+        let mut ends: Vec<Node> = pins.ends(L::WIDTH).into_iter().map(pin).collect();
+        ends.extend(rods.ends(L::WIDTH).into_iter().filter_map(rod));
         let moves = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
-        let mut trees = Trees::of(ends.iter().map(|(_, slots)| *slots), bodies.len(), moves);
+        let mut trees = Trees::of(ends.iter().map(|node| node.slots), bodies.len(), moves);
         self.members.clear();
         self.members.extend((0..bodies.len()).map(|slot| Member {
             side: Side { velocity: Vec2::zero(), spin: 0.0, inv_mass: 0.0 },
@@ -129,36 +149,50 @@ impl Direct {
         trees.refuse_easy(inv_mass, moves);
         for depth_first in trees.orders() {
             let first = self.nodes.len();
-            self.nodes.extend(depth_first.iter().map(|&k| Node { at: ends[k].0, slots: ends[k].1 }));
+            self.nodes.extend(depth_first.iter().map(|&k| ends[k]));
             for at in first..self.nodes.len() {
                 let shares = |other: &usize| {
                     let shared = |slot: &usize| moves(*slot) && self.nodes[*other].slots.contains(slot);
                     self.nodes[at].slots.iter().any(shared)
                 };
-                let later = (at + 1..self.nodes.len()).filter(shares).map(|other| (other, [[0.0; 2]; 2]));
+                let later = (at + 1..self.nodes.len()).filter(shares).map(|other| (other, [[0.0; 3]; 3]));
                 self.later.push(later.collect());
             }
         }
     }
 
     /// A step begins: bodies of all trees turn with the inertia that the last impulses, of substeps of `h_secs`, add.
-    pub(super) fn stiffen<L: Lanes>(&mut self, pins: &mut Batches<Pin<L>>, h_secs: f64) {
-        self.look_at(pins);
+    pub(super) fn stiffen<L: Lanes>(
+        &mut self,
+        pins: &mut Batches<Pin<L>>,
+        rods: &mut Batches<Rod<L>>,
+        h_secs: f64,
+    ) {
+        self.look_at(pins, rods);
         self.answer.clear();
-        self.answer.resize(self.nodes.len(), [0.0; 2]);
+        self.answer.resize(self.nodes.len(), [0.0; 3]);
         self.feel_pulls(h_secs, 1.0);
-        self.hand_inertia(pins);
+        self.hand_inertia(pins, rods);
     }
 
-    /// Pins as they are now.
-    fn look_at<L: Lanes>(&mut self, pins: &Batches<Pin<L>>) {
-        self.pins.clear();
-        self.pins.extend(self.nodes.iter().map(|node| pins.link(node.at[0]).lane(node.at[1])));
+    /// Joints as they are now.
+    fn look_at<L: Lanes>(&mut self, pins: &Batches<Pin<L>>, rods: &Batches<Rod<L>>) {
+        self.links.clear();
+        self.links.extend(self.nodes.iter().map(|node| {
+            let [batch, lane] = node.at;
+            if node.kind == Kind::Rod {
+                let [impulse, rest] = rods.link(batch).row().held_lane(lane);
+                Link::Rod(rods.link(batch).lane(lane), rest, impulse)
+            } else {
+                let [_, rest] = pins.link(batch).row().held_lane(lane);
+                Link::Pin(pins.link(batch).lane(lane), rest, node.kind)
+            }
+        }));
     }
 
     /// Sums what impulses, those solved for counted in, bodies turn with.
     fn feel_pulls(&mut self, h_secs: f64, share: f64) {
-        let Self { nodes, answer, pins, members, .. } = self;
+        let Self { nodes, answer, links, members, .. } = self;
         for slot in nodes.iter().flat_map(|node| node.slots) {
             members[slot].before = members[slot].now();
         }
@@ -166,24 +200,28 @@ impl Direct {
             (members[slot].borne, members[slot].torque) = (0.0, 0.0);
         }
         let length = |v: Vec2<f64>| v.length_squared().sqrt();
-        for ((node, answer), pin) in nodes.iter().zip(answer).zip(&*pins) {
-            let given = pin.impulse();
-            let pull = length(given + Vec2::new(answer[0], answer[1]) * (1.0 / share));
+        for ((node, answer), link) in nodes.iter().zip(answer).zip(&*links) {
+            let given = link.impulse();
+            let pull = length(given + link.force(*answer) * (1.0 / share));
             for (end, sign) in [(0, -1.0), (1, 1.0)] {
-                let (arm, body) = (pin.arm(end), &mut members[node.slots[end]]);
+                let (arm, body) = (link.arm(end), &mut members[node.slots[end]]);
                 body.borne += h_secs * (pull * length(arm));
                 body.torque += sign * share * arm.cross(given);
             }
         }
-        for (node, pin) in nodes.iter().zip(pins) {
-            pin.set_inv_inertia(0, node.slots.each(|slot| members[slot].now()));
+        for (node, link) in nodes.iter().zip(links) {
+            link.set_inv_inertia(node.slots.each(|slot| members[slot].now()));
         }
     }
 
-    fn hand_inertia<L: Lanes>(&self, pins: &mut Batches<Pin<L>>) {
+    fn hand_inertia<L: Lanes>(&self, pins: &mut Batches<Pin<L>>, rods: &mut Batches<Rod<L>>) {
         for node in &self.nodes {
             let inv_inertia = node.slots.each(|slot| self.members[slot].now());
-            pins.link_mut(node.at[0]).set_inv_inertia(node.at[1], inv_inertia);
+            if node.kind == Kind::Rod {
+                rods.link_mut(node.at[0]).set_inv_inertia(node.at[1], inv_inertia);
+            } else {
+                pins.link_mut(node.at[0]).set_inv_inertia(node.at[1], inv_inertia);
+            }
         }
     }
 
@@ -224,14 +262,14 @@ impl Direct {
     /// Makes the points of all trees stand still, or close their gaps as a push says.
     pub(super) fn solve<L: Lanes>(
         &mut self,
-        pins: &mut Batches<Pin<L>>,
+        (pins, rods): (&mut Batches<Pin<L>>, &mut Batches<Rod<L>>),
         rows: &mut [[L::Elem; 4]],
         how: Option<&Stiffness<f64>>,
     ) {
         if self.nodes.is_empty() {
             return;
         }
-        self.look_at(pins);
+        self.look_at(pins, rods);
         for slot in self.nodes.iter().flat_map(|node| node.slots) {
             self.members[slot].side = side(rows[slot]);
         }
@@ -244,22 +282,38 @@ impl Direct {
             self.restiffen(how);
             self.assemble(Some(how));
             self.eliminate();
-            self.hand_inertia(pins);
+            self.hand_inertia(pins, rods);
         }
-        self.give(pins, rows, how.map_or(1.0, Stiffness::share));
+        self.give((pins, rods), rows, how.map_or(1.0, Stiffness::share));
     }
 
-    /// Hands impulses to the pins, and velocities to the rows.
-    fn give<L: Lanes>(&mut self, pins: &mut Batches<Pin<L>>, rows: &mut [[L::Elem; 4]], share: f64) {
-        let Self { nodes, answer, pins: now, members, .. } = self;
-        for ((node, answer), pin) in nodes.iter().zip(answer).zip(now) {
-            let [mut a, mut b] = node.slots.each(|slot| members[slot].side);
-            let impulse = Vec2::new(answer[0], answer[1]);
-            pin.apply(&mut a, &mut b, impulse, 0.0);
-            members[node.slots[0]].side = a;
-            members[node.slots[1]].side = b;
-            let [batch, lane] = node.at;
-            pins.link_mut(batch).add_impulse(lane, impulse * (1.0 / share));
+    /// Hands impulses to the joints, and velocities to the rows.
+    fn give<L: Lanes>(
+        &mut self,
+        (pins, rods): (&mut Batches<Pin<L>>, &mut Batches<Rod<L>>),
+        rows: &mut [[L::Elem; 4]],
+        share: f64,
+    ) {
+        let Self { nodes, answer, links, members, .. } = self;
+        for ((node, answer), link) in nodes.iter().zip(answer).zip(links) {
+            for (end, slot) in node.slots.into_iter().enumerate() {
+                let body = &mut members[slot];
+                let given = apply(transposed(link.jacobian(end)), *answer);
+                let Side { velocity, spin, inv_mass } = body.side;
+                let now = body.now();
+                body.side.velocity = velocity + Vec2::new(given[0], given[1]) * inv_mass;
+                body.side.spin = spin + now * given[2];
+            }
+            let ([batch, lane], per_share) = (node.at, 1.0 / share);
+            if node.kind == Kind::Rod {
+                rods.link_mut(batch).row_mut().add_limit(lane, answer[0] * per_share);
+            } else {
+                let pin = pins.link_mut(batch);
+                pin.add_impulse(lane, Vec2::new(answer[0], answer[1]) * per_share);
+                if node.kind == Kind::Weld {
+                    pin.row_mut().add_limit(lane, answer[2] * per_share);
+                }
+            }
         }
         for slot in nodes.iter().flat_map(|node| node.slots) {
             let Side { velocity, spin, .. } = members[slot].side;
@@ -269,16 +323,19 @@ impl Direct {
 
     /// Blocks and velocities as bodies are and move now.
     fn assemble(&mut self, how: Option<&Stiffness<f64>>) {
-        let Self { nodes, later, own, pins, members, .. } = self;
+        let Self { nodes, later, own, links, members, .. } = self;
         own.clear();
-        for (at, (node, pin)) in nodes.iter().zip(&*pins).enumerate() {
+        for (at, (node, link)) in nodes.iter().zip(&*links).enumerate() {
             let [a, b] = node.slots.each(|slot| members[slot].side);
-            let [k11, k12, k22] = Response::matrix(pin, a.inv_mass + b.inv_mass);
-            let wanted = pin.wanted(&a, &b, how);
-            own.push(([[k11, k12], [k12, k22]], [wanted.x, wanted.y]));
+            let masses = |slot: usize| [members[slot].side.inv_mass, members[slot].now()];
+            let mut block = coupling(link, node.slots, link, node.slots, masses);
+            // Rows that are none answer with nothing.
+            for row in link.rows()..3 {
+                block[row][row] = 1.0;
+            }
+            own.push((block, link.wanted(&a, &b, how)));
             for (other, block) in &mut later[at] {
-                let inv_mass = |slot: usize| members[slot].side.inv_mass;
-                *block = coupling(pin, node.slots, &pins[*other], nodes[*other].slots, inv_mass);
+                *block = coupling(link, node.slots, &links[*other], nodes[*other].slots, masses);
             }
         }
     }
@@ -295,7 +352,7 @@ impl Direct {
                 // Aᵀ·D⁻¹, once per neighbour.
                 let factor = times(transposed(a_ij), inverse);
                 let taken = apply(factor, wanted);
-                own[j].1 = [own[j].1[0] - taken[0], own[j].1[1] - taken[1]];
+                own[j].1 = crate::each::indexed(|k| own[j].1[k] - taken[k]);
                 own[j].0 = minus(own[j].0, times(factor, a_ij));
                 for &(i, a_ii) in &mine[k + 1..] {
                     // Neighbours of a leaf share a body, so that they are neighbours too.
@@ -309,42 +366,37 @@ impl Direct {
             own[at].0 = inverse;
         }
         answer.clear();
-        answer.resize(nodes.len(), [0.0; 2]);
+        answer.resize(nodes.len(), [0.0; 3]);
         for at in (0..nodes.len()).rev() {
             let (inverse, wanted) = own[at];
             let sum = later[at].iter().fold(wanted, |sum, &(j, block)| {
                 let part = apply(block, answer[j]);
-                [sum[0] + part[0], sum[1] + part[1]]
+                crate::each::indexed(|k| sum[k] + part[k])
             });
-            let solved = apply(inverse, sum);
-            answer[at] = [-solved[0], -solved[1]];
+            answer[at] = apply(inverse, sum).each(|solved: f64| -solved);
         }
     }
 }
 
-/// What an impulse at one pin moves another by through the body or bodies they share: kg⁻¹.
+/// What impulses of one joint change the rows of another by through the body or bodies they share: J·M⁻¹·Jᵀ.
 fn coupling(
-    pin: &Pin<f64>,
+    link: &Link,
     slots: [usize; 2],
-    other: &Pin<f64>,
+    other: &Link,
     theirs: [usize; 2],
-    inv_mass: impl Fn(usize) -> f64,
+    masses: impl Fn(usize) -> [f64; 2],
 ) -> Block {
-    let mut sum = [[0.0; 2]; 2];
+    let mut sum = [[0.0; 3]; 3];
     for (k, &slot) in slots.iter().enumerate() {
         for (n, &there) in theirs.iter().enumerate() {
-            let m = inv_mass(slot);
+            let [m, i] = masses(slot);
             if slot != there || m == 0.0 {
                 continue;
             }
-            let sign = if k == n { 1.0 } else { -1.0 };
-            let (r, s) = (pin.arm(k), other.arm(n));
-            let inv_inertia = pin.inv_inertia_of(k);
-            let [ru, su] = [[-r.y, r.x], [-s.y, s.x]];
-            for i in 0..2 {
-                for j in 0..2 {
-                    let linear = if i == j { m } else { 0.0 };
-                    sum[i][j] += sign * (linear + inv_inertia * ru[i] * su[j]);
+            let (own, their) = (link.jacobian(k), other.jacobian(n));
+            for (sums, own) in sum.iter_mut().zip(own) {
+                for (sum, their) in sums.iter_mut().zip(their) {
+                    *sum += m * (own[0] * their[0] + own[1] * their[1]) + i * (own[2] * their[2]);
                 }
             }
         }
@@ -358,27 +410,31 @@ fn side<R: Real>(row: [R; 4]) -> Side<f64> {
 }
 
 fn transposed(a: Block) -> Block {
-    [[a[0][0], a[1][0]], [a[0][1], a[1][1]]]
+    crate::each::indexed(|i| crate::each::indexed(|j| a[j][i]))
 }
 
 fn times(a: Block, b: Block) -> Block {
-    crate::each::indexed(|i| crate::each::indexed(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
+    let at = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+    crate::each::indexed(|i| crate::each::indexed(|j| at(i, j)))
 }
 
 fn minus(a: Block, b: Block) -> Block {
     crate::each::indexed(|i| crate::each::indexed(|j| a[i][j] - b[i][j]))
 }
 
-fn apply(a: Block, v: [f64; 2]) -> [f64; 2] {
-    [a[0][0] * v[0] + a[0][1] * v[1], a[1][0] * v[0] + a[1][1] * v[1]]
+fn apply(a: Block, v: Triple) -> Triple {
+    crate::each::indexed(|i| a[i][0] * v[0] + a[i][1] * v[1] + a[i][2] * v[2])
 }
 
-/// Zeros where nothing yields.
+/// Of a symmetric matrix, by its adjoint; zeros where nothing yields.
 fn inverse(a: Block) -> Block {
-    let determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+    let minor = |i: usize, j: usize| {
+        let ([i, k], [j, l]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
+        a[i][j] * a[k][l] - a[i][l] * a[k][j]
+    };
+    let determinant = a[0][0] * minor(0, 0) + a[0][1] * minor(0, 1) + a[0][2] * minor(0, 2);
     if determinant <= 0.0 {
-        return [[0.0; 2]; 2];
+        return [[0.0; 3]; 3];
     }
-    let per = 1.0 / determinant;
-    [[a[1][1] * per, -a[0][1] * per], [-a[1][0] * per, a[0][0] * per]]
+    crate::each::indexed(|i| crate::each::indexed(|j| minor(j, i) / determinant))
 }

@@ -48,7 +48,7 @@ pub(super) struct Pin<L> {
 }
 
 /// A pin's response: K⁻¹, c and k of the module's head.
-pub(super) struct Response<L> {
+struct Response<L> {
     inverse: [L; 3],
     coupling: Vec2<L>,
     angular: L,
@@ -71,7 +71,7 @@ impl<L: Lanes> Response<L> {
 
     /// K: its diagonal's first, the one beside it, its diagonal's second, 1/kg.
     #[inline(always)]
-    pub(super) fn matrix(pin: &Pin<L>, inv_mass: L) -> [L; 3] {
+    fn matrix(pin: &Pin<L>, inv_mass: L) -> [L; 3] {
         let ([ia, ib], [ra, rb], m) = (pin.inv_inertia, pin.arms, inv_mass);
         let k11 = m + (ia * (ra.y * ra.y) + ib * (rb.y * rb.y));
         let k22 = m + (ia * (ra.x * ra.x) + ib * (rb.x * rb.x));
@@ -89,7 +89,7 @@ impl<L: Lanes> Response<L> {
 
 impl<L: Lanes> Pin<L> {
     #[inline(always)]
-    pub(super) fn apply(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: Vec2<L>, angular: L) {
+    fn apply(&self, a: &mut Side<L>, b: &mut Side<L>, impulse: Vec2<L>, angular: L) {
         a.velocity = a.velocity - impulse * a.inv_mass;
         b.velocity = b.velocity + impulse * b.inv_mass;
         a.spin = a.spin - self.inv_inertia[0] * (self.arms[0].cross(impulse) + angular);
@@ -123,11 +123,7 @@ impl<L: Lanes> Pin<L> {
 
     /// 1/(kg·m²) of A and B, in one lane.
     pub(super) fn set_inv_inertia(&mut self, lane: usize, values: [f64; 2]) {
-        for (lanes, value) in self.inv_inertia.iter_mut().zip(values) {
-            let mut all = lanes.to_array();
-            all[lane] = L::Elem::from_f64(value);
-            *lanes = L::load(&all);
-        }
+        super::set_lane(&mut self.inv_inertia, lane, values);
     }
 
     /// Adds to one lane's impulse, N·s, in units of v.
@@ -154,14 +150,24 @@ impl<L: Lanes> Pin<L> {
         self.impulse
     }
 
+    /// The row of its angle.
+    pub(super) fn row(&self) -> &Row<L> {
+        &self.row
+    }
+
+    /// The row of its angle.
+    pub(super) fn row_mut(&mut self) -> &mut Row<L> {
+        &mut self.row
+    }
+
+    /// B's attitude seen from A, rad.
+    pub(super) fn angle(&self) -> L {
+        self.angle
+    }
+
     /// From the centroid of A (0) or B (1), metres.
     pub(super) fn arm(&self, end: usize) -> Vec2<L> {
         self.arms[end]
-    }
-
-    /// Of A (0) or B (1).
-    pub(super) fn inv_inertia_of(&self, end: usize) -> L {
-        self.inv_inertia[end]
     }
 }
 

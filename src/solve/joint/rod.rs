@@ -11,8 +11,9 @@
 
 use super::row::{Numbers, Row};
 use super::{Linkage, Pose, Stiffness, Swing, anchors, turn};
+use crate::each::Each as _;
 use crate::joint::{Held, Joint};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::{Side, inverse};
 use crate::vec2::Vec2;
 
@@ -57,6 +58,65 @@ impl<L: Lanes> Rod<L> {
     #[inline(always)]
     fn speed(&self, a: &Side<L>, b: &Side<L>, [la, lb]: [L; 2]) -> L {
         (b.velocity - a.velocity).dot(self.axis) + (b.spin * lb - a.spin * la)
+    }
+
+    /// What the row's velocity is to be rid of, were it held at `rest`: with bias where a push says how.
+    #[inline(always)]
+    pub(super) fn wanted(&self, a: &Side<L>, b: &Side<L>, rest: L, how: Option<&Stiffness<L>>) -> L {
+        let speed = self.speed(a, b, self.levers());
+        how.map_or(speed, |how| (speed + self.bend(a, b, how)) + (self.length - rest) * how.bias_rate)
+    }
+
+    /// What a substep adds to the row's velocity by turning.
+    #[inline(always)]
+    fn bend(&self, a: &Side<L>, b: &Side<L>, how: &Stiffness<L>) -> L {
+        let arms = how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin);
+        let spin = self.arms[1].turned_by(b.spin) - self.arms[0].turned_by(a.spin);
+        let step = ((b.velocity - a.velocity) + spin + arms) * how.h;
+        let (p, q) = (self.length + self.axis.dot(step), self.axis.cross(step));
+        let beyond = (q * q) * inverse(p + (p * p + q * q).sqrt());
+        arms.dot(self.axis) + beyond * how.per_sec
+    }
+
+    /// One lane's, in `f64`; without its row.
+    pub(super) fn lane(&self, lane: usize) -> Rod<f64> {
+        let number = |value: L| value.to_array()[lane].to_f64();
+        let vector = |v: Vec2<L>| Vec2::new(number(v.x), number(v.y));
+        Rod {
+            anchors: self.anchors.each(vector),
+            inv_inertia: self.inv_inertia.each(number),
+            arms: self.arms.each(vector),
+            apart: vector(self.apart),
+            axis: vector(self.axis),
+            length: number(self.length),
+            row: Row::new(&[], &[]),
+            late: Swing::none(),
+        }
+    }
+
+    /// From the centroid of A (0) or B (1), metres.
+    pub(super) fn arm(&self, end: usize) -> Vec2<L> {
+        self.arms[end]
+    }
+
+    /// Unit, from A's anchor to B's.
+    pub(super) fn axis(&self) -> Vec2<L> {
+        self.axis
+    }
+
+    /// The row of its length.
+    pub(super) fn row(&self) -> &Row<L> {
+        &self.row
+    }
+
+    /// The row of its length.
+    pub(super) fn row_mut(&mut self) -> &mut Row<L> {
+        &mut self.row
+    }
+
+    /// 1/(kg·m²) of A and B, in one lane.
+    pub(super) fn set_inv_inertia(&mut self, lane: usize, values: [f64; 2]) {
+        super::set_lane(&mut self.inv_inertia, lane, values);
     }
 
     #[inline(always)]
@@ -126,12 +186,7 @@ impl<L: Lanes> Linkage<L> for Rod<L> {
     #[inline(always)]
     fn push(&mut self, how: &Stiffness<L>, a: &mut Side<L>, b: &mut Side<L>) {
         let levers = self.levers();
-        let arms = how.bend(self.arms[1], b.spin) - how.bend(self.arms[0], a.spin);
-        let spin = self.arms[1].turned_by(b.spin) - self.arms[0].turned_by(a.spin);
-        let step = ((b.velocity - a.velocity) + spin + arms) * how.h;
-        let (p, q) = (self.length + self.axis.dot(step), self.axis.cross(step));
-        let beyond = (q * q) * inverse(p + (p * p + q * q).sqrt());
-        let bend = arms.dot(self.axis) + beyond * how.per_sec;
+        let bend = self.bend(a, b, how);
         let k = self.response(a, b, levers);
         let impulse = self.row.push(how, self.length, self.speed(a, b, levers), bend, [k; 2]);
         self.apply(a, b, levers, impulse);

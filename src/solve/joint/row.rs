@@ -102,6 +102,25 @@ impl<L: Lanes> Row<L> {
         }
     }
 
+    /// Is the coordinate of a lane held rigidly, at one value?
+    pub(super) fn is_rigid(&self, lane: usize) -> bool {
+        let at = |value: &L| value.to_array()[lane];
+        at(&self.lower) == at(&self.upper) && at(&self.gain) == L::Elem::ZERO
+    }
+
+    /// Adds to the impulse of the bounds of one lane, in units of v.
+    pub(super) fn add_limit(&mut self, lane: usize, impulse: f64) {
+        let mut values = self.limit.to_array();
+        values[lane] = L::Elem::from_f64(values[lane].to_f64() + impulse);
+        self.limit = L::load(&values);
+    }
+
+    /// One lane's impulse and the value it is held at, in `f64`.
+    pub(super) fn held_lane(&self, lane: usize) -> [f64; 2] {
+        let at = |value: L| value.to_array()[lane].to_f64();
+        [at(self.impulse()), at(self.upper)]
+    }
+
     /// The whole impulse, in units of v.
     #[inline(always)]
     pub(super) fn impulse(&self) -> L {

@@ -168,6 +168,8 @@ pub struct JointStream<L: Lanes> {
     spans: Vec<Span>,
     direct: Direct,
     made_from: MadeFrom,
+    /// What impulses were before an impact that is no load to go on with.
+    before: (Vec<Pin<L>>, Vec<Rod<L>>),
 }
 
 impl<L: Lanes> Default for JointStream<L> {
@@ -178,6 +180,7 @@ impl<L: Lanes> Default for JointStream<L> {
             spans: Vec::new(),
             direct: Direct::default(),
             made_from: MadeFrom::default(),
+            before: (Vec::new(), Vec::new()),
         }
     }
 }
@@ -254,7 +257,7 @@ impl<L: Lanes> JointStream<L> {
         }
         self.direct.clear();
         if direct {
-            self.direct.look_over(&self.pins, bodies);
+            self.direct.look_over(&self.pins, &self.rods, bodies);
         }
     }
 
@@ -269,7 +272,7 @@ impl<L: Lanes> JointStream<L> {
     /// A step begins: arms, gaps and angles from the poses.
     pub fn place(&mut self, bodies: &Bodies<L::Elem>) {
         each!(self, |c, ends| { c.place(Pose::gather(bodies, [ends.a, ends.b])) });
-        self.direct.stiffen(&mut self.pins, self.made_from.h_secs);
+        self.direct.stiffen(&mut self.pins, &mut self.rods, self.made_from.h_secs);
     }
 
     /// Makes impulses `scale` times what they were and adds what they change velocities by, times `share`: with the
@@ -320,6 +323,35 @@ impl<L: Lanes> JointStream<L> {
         });
     }
 
+    /// Velocities alone once more, without bias.
+    pub(in crate::solve) fn settle(&mut self, rows: &mut [[L::Elem; 4]], how: &Stiffness<L>) {
+        each!(self, |c, ends| {
+            with_sides(rows, &ends, |a, b| c.relax(how, a, b));
+        });
+        self.solve_directly(rows, None);
+    }
+
+    /// Notes impulses, to be taken back by [`JointStream::restore`].
+    pub(in crate::solve) fn note(&mut self) {
+        self.before.0.clone_from(&self.pins.links);
+        self.before.1.clone_from(&self.rods.links);
+    }
+
+    /// Impulses are again those that were noted.
+    pub(in crate::solve) fn restore(&mut self) {
+        std::mem::swap(&mut self.before.0, &mut self.pins.links);
+        std::mem::swap(&mut self.before.1, &mut self.rods.links);
+    }
+
+    /// Marks the slots of bodies with joints.
+    pub(in crate::solve) fn mark(&self, jointed: &mut [bool]) {
+        let slots = [&self.pins.a, &self.pins.b, &self.rods.a, &self.rods.b];
+        for &slot in slots.into_iter().flatten() {
+            // The world stands for padding.
+            jointed[slot as usize] = slot != 0;
+        }
+    }
+
     /// Hands impulses and angles back to the joints.
     pub fn end(&mut self, joints: &mut Joints<L::Elem>) {
         each!(self, |c, ends| {
@@ -342,7 +374,7 @@ impl<L: Lanes> JointStream<L> {
         rows: &mut [[L::Elem; 4]],
         push: Option<&Stiffness<f64>>,
     ) {
-        self.direct.solve(&mut self.pins, rows, push);
+        self.direct.solve((&mut self.pins, &mut self.rods), rows, push);
     }
 
     /// Bytes of constraints and slots a pass streams.

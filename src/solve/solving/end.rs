@@ -7,6 +7,7 @@ use crate::lanes::{Lanes, Real};
 use crate::motion::Motion;
 use crate::settings::Solver;
 use crate::solve::bounce::{self, Bouncing, MoveOut};
+use crate::solve::joint::Stiffness;
 use crate::solve::{SolverContext, deep, soft};
 
 impl<L: Lanes> Solving<L> {
@@ -21,8 +22,11 @@ impl<L: Lanes> Solving<L> {
             self.substep_groups.count() > 1 || matches!(context.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing.any {
             self.take_rows(manifolds, motion);
-            if self.bounce(context, motion, settled) && self.in_rows {
-                self.stream.write_rows(manifolds, None);
+            if self.bounce(context, motion, settled) {
+                self.bounce_with_joints(context, motion, settled);
+                if self.in_rows {
+                    self.stream.write_rows(manifolds, None);
+                }
             }
         }
         if self.deep.steps > 0 && context.solver == Solver::Soft {
@@ -53,6 +57,27 @@ impl<L: Lanes> Solving<L> {
         stream.visit(&mut MoveOut { rows, displaced, moved: before, entered, any: false });
         self.displace(motion, settled);
         true
+    }
+
+    /// What joints hold bounces as they let it: joints take from a bounce what would part them, and it is given again. An
+    /// impact is no load for joints to go on with.
+    fn bounce_with_joints(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        motion: &mut Motion<L::Elem>,
+        settled: bool,
+    ) {
+        if self.bouncing.rounds == 0 {
+            return;
+        }
+        let how = Stiffness::soft(context.plan.h_secs, context.plan.impulse_share());
+        self.joints.note();
+        for _ in 0..self.bouncing.rounds {
+            self.joints.settle(motion.velocity.fours_mut(), &how);
+            self.bounce(context, motion, settled);
+        }
+        self.joints.settle(motion.velocity.fours_mut(), &how);
+        self.joints.restore();
     }
 
     /// Moves what is deep in something else out of it; says whether anything is.

@@ -31,8 +31,6 @@ pub struct Goal {
     pub stiffness: f64,
     /// What an impulse changes displacements by, over what it changes velocities by.
     pub share: f64,
-    /// Uniform gravity, m/s².
-    pub gravity: [f64; 2],
     /// Gaps up to this touch, metres.
     pub touch: f64,
 }
@@ -45,9 +43,9 @@ impl Goal {
         let (max_sag, base, share) = (settings.max_sag, plan.substeps, plan.impulse_share());
         let looks_for_towers =
             context.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
-        let (gravity, touch) = (forces.gravity.unwrap_or_default(), context.needs.touch());
+        let touch = context.needs.touch();
         let paced = max_sag.is_some() || looks_for_towers;
-        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, gravity, touch })
+        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, touch })
     }
 
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.

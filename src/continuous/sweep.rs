@@ -1,0 +1,202 @@
+//! Shapes on their ways through a step.
+
+use glam::DVec2;
+
+use super::Reach;
+use crate::body::{Bodies, Form};
+use crate::each::Each as _;
+use crate::lanes::Real;
+use crate::motion::Fast;
+use crate::shape::MAX_VERTICES;
+use crate::vec2::{Rot, Vec2};
+
+/// A shape and its way through what is left of a step; time runs from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweep {
+    /// Centroid at the beginning, metres.
+    pub(super) x: DVec2,
+    pub(super) rot: Rot<f64>,
+    /// Metres and rad per step.
+    pub(super) moved: DVec2,
+    pub(super) angle: f64,
+    /// Radius of a disc; 0 for outlines.
+    pub(super) disc: f64,
+    /// Bounding radius.
+    pub(super) radius: f64,
+    /// Vertices in the body frame, counter-clockwise.
+    pub(super) vertices: [DVec2; MAX_VERTICES],
+    pub(super) count: usize,
+}
+
+impl Sweep {
+    pub(super) fn of_fast<R: Real>(bodies: &Bodies<R>, fast: &Fast<R>) -> Self {
+        let [x, y, c, s] = fast.start.each(R::to_f64);
+        let [dx, dy, angle] = fast.moved.each(R::to_f64);
+        let still = Self::shape(bodies, fast.slot as usize);
+        let [x, y] = if bodies.fine.is_some() {
+            let [x, y] = bodies.place(fast.slot as usize);
+            [x - dx, y - dy]
+        } else {
+            [x, y]
+        };
+        Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, ..still }
+    }
+
+    /// The poses of obstacles are those at the step's end: a kinematic one came there by its velocity.
+    pub(super) fn of_obstacle<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
+        let [x, y] = bodies.place(slot);
+        let [c, s, vx, vy, w] =
+            [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].each(|column| column[slot].to_f64());
+        let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
+        let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
+        Self { x, rot, moved, angle, ..Self::shape(bodies, slot) }
+    }
+
+    pub(super) fn shape<R: Real>(bodies: &Bodies<R>, slot: usize) -> Self {
+        let (hx, hy) = (bodies.extent_x[slot].to_f64(), bodies.extent_y[slot].to_f64());
+        let mut vertices = [DVec2::ZERO; MAX_VERTICES];
+        let (disc, count) = match bodies.form(slot) {
+            Form::Circle => (hx, 0),
+            Form::Box => {
+                let corners = [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].each(DVec2::from);
+                vertices[..4].copy_from_slice(&corners);
+                (0.0, 4)
+            }
+            Form::Polygon => {
+                let at = bodies.shapes(slot).start;
+                let [x, y, ..] = &bodies.polygons.body[at];
+                vertices = crate::each::indexed(|k| DVec2::new(x[k].to_f64(), y[k].to_f64()));
+                (0.0, usize::from(bodies.polygons.count[at]))
+            }
+        };
+        Self {
+            x: DVec2::ZERO,
+            rot: Rot { c: 1.0, s: 0.0 },
+            moved: DVec2::ZERO,
+            angle: 0.0,
+            disc,
+            radius: bodies.radius[slot].to_f64(),
+            vertices,
+            count,
+        }
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.moved.is_finite() && self.angle.is_finite()
+    }
+
+    /// Do the bounding circles meet on their way?
+    pub(super) fn may_meet(&self, other: &Self, reach: &Reach) -> bool {
+        let (from, way) = (other.x - self.x, other.moved - self.moved);
+        let length_squared = way.length_squared();
+        let nearest =
+            if length_squared > 0.0 { (-from.dot(way) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+        let near = self.radius + other.radius + reach.touching;
+        (from + way * nearest).length_squared() <= near * near
+    }
+
+    /// The disc about the centroid.
+    pub(super) fn core(&self, radius: f64) -> Self {
+        Self { disc: radius, radius, count: 0, ..*self }
+    }
+
+    /// What spin can close along any axis: a disc's none.
+    pub(super) fn spin_speed(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.angle.abs() * self.radius }
+    }
+
+    /// What is left of the way from a time on.
+    pub(super) fn after(&self, t: f64) -> Self {
+        Self {
+            x: self.x + self.moved * t,
+            rot: self.rot.turned(self.angle * t),
+            moved: self.moved * (1.0 - t),
+            angle: self.angle * (1.0 - t),
+            ..*self
+        }
+    }
+
+    pub(super) fn at(&self, t: f64) -> Placed {
+        let rot = self.rot.turned(self.angle * t);
+        let turned = |v: DVec2| {
+            let v = rot.apply(Vec2::new(v.x, v.y));
+            DVec2::new(v.x, v.y)
+        };
+        Placed {
+            centre: self.x + self.moved * t,
+            disc: self.disc,
+            vertices: self.vertices.each(turned),
+            count: self.count,
+        }
+    }
+}
+
+/// An obstacle, and its faces as the step begins.
+#[derive(Clone, Debug)]
+pub(super) struct Wall {
+    pub(super) sweep: Sweep,
+    /// Outward normal, and how far the shape reaches along it; as many as the shape has vertices.
+    faces: [(DVec2, f64); MAX_VERTICES],
+}
+
+impl Wall {
+    pub(super) fn new<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
+        let sweep = Sweep::of_obstacle(bodies, slot, dt_secs);
+        let placed = sweep.at(0.0);
+        let mut faces = [(DVec2::ZERO, 0.0); MAX_VERTICES];
+        for (face, normal) in faces.iter_mut().zip(placed.normals()) {
+            *face = (normal, placed.extent(normal));
+        }
+        Self { sweep, faces }
+    }
+
+    /// Does a face promise that `body` does not come near in this step, whatever its outline? See [`approach`],
+    /// whose first advance would say so too.
+    pub(super) fn keeps_clear(&self, body: &Sweep, reach: &Reach) -> bool {
+        let (from, way) = (body.x - self.sweep.x, body.moved - self.sweep.moved);
+        let spin = body.spin_speed() + self.sweep.spin_speed();
+        self.faces[..self.sweep.count].iter().any(|&(normal, extent)| {
+            let apart = normal.dot(from) - extent - body.radius;
+            apart > reach.touching && apart - reach.clear >= spin - normal.dot(way)
+        })
+    }
+}
+
+/// A shape where it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub(super) centre: DVec2,
+    pub(super) disc: f64,
+    /// About the centre, world axes.
+    pub(super) vertices: [DVec2; MAX_VERTICES],
+    pub(super) count: usize,
+}
+
+impl Placed {
+    pub(super) fn vertices(&self) -> &[DVec2] {
+        &self.vertices[..self.count]
+    }
+
+    /// How far the shape reaches from its centre along `axis`.
+    pub(super) fn extent(&self, axis: DVec2) -> f64 {
+        let corners = self.vertices().iter().map(|v| axis.dot(*v));
+        if self.count == 0 { self.disc } else { corners.fold(f64::MIN, f64::max) }
+    }
+
+    /// Outward unit normals of the faces.
+    pub(super) fn normals(&self) -> impl Iterator<Item = DVec2> + '_ {
+        let next = self.vertices().iter().cycle().skip(1);
+        self.vertices().iter().zip(next).map(|(&p, &q)| -(q - p).perp().normalize())
+    }
+
+    /// From a disc's centre towards the nearest vertex, or the centre of the other disc.
+    pub(super) fn towards(&self, other: &Self) -> DVec2 {
+        let to = other.centre - self.centre;
+        let nearer = |a: DVec2, b: &DVec2| {
+            let b = to + *b;
+            if b.length_squared() < a.length_squared() { b } else { a }
+        };
+        let start = other.vertices().first().map_or(to, |v| to + *v);
+        other.vertices().iter().fold(start, nearer).normalize_or(DVec2::Y)
+    }
+}

@@ -1,0 +1,90 @@
+//! Pairs that are apart and pass each other.
+//!
+//! **The law.** A contact over a gap takes from the approach along its normal what is more than the gap: right for faces, which
+//! go on to all sides, wrong for corners, which do not. So a pair that is apart is a contact only if the way of the one, seen
+//! from the other, meets it: convex shapes that move straight meet if, and only if, their shadows along the way do. What turns
+//! is given what its outline may gain by that.
+
+use super::Found;
+use crate::body::{Bodies, BodyKind, Form};
+use crate::lanes::{Lanes, Real};
+
+/// Ways shorter than this, over how far apart a pair is, say nothing of where it goes.
+const SHORT: f64 = 1e-3;
+
+/// How a step moves what is free.
+#[derive(Clone, Copy, Debug)]
+pub struct Stride<R> {
+    /// Seconds; 0 where pairs are not asked whether they pass each other.
+    pub secs: R,
+    /// What gravity adds to a way, metres.
+    pub fallen: [R; 2],
+}
+
+/// Takes the pairs of `lanes` out that pass each other in a step.
+#[cold]
+#[inline(never)]
+pub(super) fn leave_out<L: Lanes>(
+    found: &mut Found<L>,
+    bodies: &Bodies<L::Elem>,
+    slots: [&[u32]; 2],
+    lanes: u32,
+    stride: Stride<L::Elem>,
+) {
+    let separations = found.separations[0].to_array();
+    let mut passing = [L::Elem::ZERO; 16];
+    let mut any = false;
+    for lane in crate::lanes::set_lanes(lanes) {
+        let [a, b] = [0, 1].map(|end| slots[end][lane] as usize);
+        if pass(bodies, [a, b], separations[lane].to_f64(), stride) {
+            passing[lane] = L::Elem::ONE;
+            any = true;
+        }
+    }
+    if any {
+        let stays = L::load(&passing).le(L::zero());
+        found.hits = found.hits.map(|hits| hits & stays);
+    }
+}
+
+/// Do two bodies, `separation` metres apart, pass each other within a step?
+fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride: Stride<R>) -> bool {
+    let secs = stride.secs.to_f64();
+    let falls = |slot: usize| if bodies.kind(slot) == BodyKind::Dynamic { 1.0 } else { 0.0 };
+    let fallen = falls(b) - falls(a);
+    let way = |column: &crate::column::Column<R>, k: usize| {
+        (column[b] - column[a]).to_f64() * secs + fallen * stride.fallen[k].to_f64()
+    };
+    let [wx, wy] = [way(&bodies.vx, 0), way(&bodies.vy, 1)];
+    let length = wx.hypot(wy);
+    let turned = [a, b].map(|slot| turning(bodies, slot) * secs);
+    if length <= SHORT * separation {
+        return false;
+    }
+    let across = [-wy / length, wx / length];
+    let ([ax, ay], [bx, by]) = (bodies.place(a), bodies.place(b));
+    let apart = ((bx - ax) * across[0] + (by - ay) * across[1]).abs();
+    let side = if (bx - ax) * across[0] + (by - ay) * across[1] < 0.0 { -1.0 } else { 1.0 };
+    let along = across.map(|way| way * side);
+    // From A towards B, and from B towards A.
+    let shadows = extent(bodies, a, along) + extent(bodies, b, along.map(|way| -way));
+    apart > shadows + turned[0] + turned[1]
+}
+
+/// How fast turning may carry a body's outline outwards, m/s.
+fn turning<R: Real>(bodies: &Bodies<R>, slot: usize) -> f64 {
+    if bodies.form(slot) == Form::Circle {
+        0.0
+    } else {
+        (bodies.w[slot] * bodies.radius[slot]).to_f64().abs()
+    }
+}
+
+/// How far a body reaches from its centroid along a direction, metres.
+fn extent<R: Real>(bodies: &Bodies<R>, slot: usize, along: [f64; 2]) -> f64 {
+    let (corners, count) = bodies.corners(slot);
+    if count == 0 {
+        return bodies.extent_x[slot].to_f64();
+    }
+    corners[..count].iter().map(|corner| corner.x * along[0] + corner.y * along[1]).fold(f64::MIN, f64::max)
+}
