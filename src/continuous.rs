@@ -236,7 +236,12 @@ impl<R: Real> Continuous<R> {
 
     /// Finds what a body meets next.
     fn look_ahead(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) {
-        if self.ways[way].left == 0 {
+        let Way { slot, sweep, met, left, .. } = &self.ways[way];
+        // Once it has met something what goes no further than slow bodies do is left to the next step's contacts; whom it may
+        // meet that is slow is found by the other.
+        let path = sweep.moved.length() + sweep.angle.abs() * sweep.radius;
+        let goes_on = if *met { path > bodies.core[*slot].to_f64() } else { way < self.fast.len() };
+        if *left == 0 || !goes_on {
             self.ways[way].next = None;
             return;
         }
@@ -249,10 +254,8 @@ impl<R: Real> Continuous<R> {
                 first = Some(found);
             }
         };
-        if self.is_fast(way) {
-            for wall in 0..self.walls.len() {
-                keep(self.wall_ahead(bodies, around, way, wall));
-            }
+        for wall in 0..self.walls.len() {
+            keep(self.wall_ahead(bodies, around, way, wall));
         }
         for other in &beside {
             keep(self.body_ahead(way, *other as usize));
@@ -293,11 +296,6 @@ impl<R: Real> Continuous<R> {
             beside.extend(self.way_of[other].checked_sub(1));
         }
         beside
-    }
-
-    /// Is a way one of a fast body, not of one that it may meet?
-    fn is_fast(&self, way: usize) -> bool {
-        way < self.fast.len() || self.ways[way].met
     }
 
     fn wall_ahead(

@@ -107,6 +107,15 @@ named_enum! {
 }
 
 named_enum! {
+    /// What advances a body whose fields a substep of its scheme cannot follow; see [`crate::integrate`].
+    StiffFields, "way with stiff fields",
+    /// What those fields do exactly: drag decays, springs and magnetic fields turn.
+    Exact = "exact",
+    /// The scheme, which leaves such a body: for seeing where.
+    Scheme = "scheme",
+}
+
+named_enum! {
     /// The scalar a world is built on.
     Precision, "precision",
     /// 32-bit floats.
@@ -326,6 +335,9 @@ pub struct Settings {
     /// [`crate::solve::slender_stack`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub fixed_substeps: bool,
+    /// What advances a body whose fields its scheme cannot follow; `None` for [`StiffFields::Exact`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiff_fields: Option<StiffFields>,
     /// Stiffness of soft contacts, hz·h: their frequency as a share of the substep rate, over 0 up to
     /// [`MOST_STIFF`]; `None` for [`HERTZ_TIMES_SUBSTEP`], the stiffest that stays calm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -361,6 +373,7 @@ impl Default for Settings {
             sleep: false,
             max_sag: None,
             fixed_substeps: false,
+            stiff_fields: None,
             stiffness: None,
             positions: None,
             max_speed: None,

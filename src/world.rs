@@ -21,7 +21,7 @@ use crate::measure::{Counts, Stage, Stopwatch, first_non_finite, non_finite_in};
 use crate::motion::{Motion, Plan, Skipped, Warm};
 use crate::narrow::{MovedBodies, Narrow, Stride};
 use crate::scene::{Scene, SceneError};
-use crate::settings::{Precision, Settings, Skip};
+use crate::settings::{Precision, Settings, Skip, StiffFields};
 use crate::solve::substep_group::Goal;
 use crate::solve::{self, SceneNeeds, SolverContext, Solving};
 
@@ -218,7 +218,9 @@ impl<L: Lanes> World<L> {
         let seen = self.find_contacts(needs, rounded);
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
         let may_fly = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
-        let stiff = self.laws.stiff.begin(integrator, &self.bodies, begun_secs, [plan.h_secs, dt_secs]);
+        let exact = self.settings.stiff_fields != Some(StiffFields::Scheme);
+        let lengths = [plan.h_secs, dt_secs];
+        let stiff = exact && self.laws.stiff.begin(integrator, &self.bodies, begun_secs, lengths);
         let free_flight = may_fly && !stiff;
         let (mut skipped, finite) = if free_flight {
             self.made.forget_poses();

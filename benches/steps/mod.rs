@@ -150,7 +150,7 @@ fn piles() -> Vec<Case> {
     let asleep = |scene: &str, bodies: u64| {
         let settings = Settings { sleep: true, ..Settings::default() };
         let case = Case::new(&format!("sleeping/{scene}"), scene, bodies, SETTLE_STEPS).with(settings);
-        Case { further_steps: 120, ..case }
+        Case { further_steps: 300, ..case }
     };
     vec![
         flight(150),

@@ -10,7 +10,7 @@
 //!   springs and magnetic fields turn, at any step: an oscillator keeps its energy to round-off.
 //! * Quadratic drag is implicit: s·(1 + k·s·h/m) = |w| for the speed s that is left of w. Its terminal speed is exact.
 //!
-//! Slower bodies keep the bits of their scheme. How many are advanced so is counted in
+//! Slower bodies keep the bits of their scheme, as do all with [`StiffFields::Scheme`](crate::settings::StiffFields::Scheme). How many are advanced so is counted in
 //! [`Counts::stiff`](crate::measure::Counts::stiff).
 //!
 //! The exponential is by scaling and squaring: a Taylor series of ten terms at a norm below 1/16 (Moler and Van Loan,

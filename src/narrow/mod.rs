@@ -113,7 +113,7 @@ pub enum MovedBodies<'a> {
 #[derive(Clone, Debug)]
 pub struct Narrow<R: Real> {
     poses: Column<R>,
-    /// Rows of four per slot: vx, vy, radius, –; only where a margin looks ahead.
+    /// Rows of four per slot: vx, vy, bounding radius, inner radius of what moves; only where a margin looks ahead.
     speeds: Column<R>,
     /// What centroids are beyond the rows of `poses`; see [`Bodies::fine`].
     fine: Column<R>,
@@ -309,19 +309,22 @@ impl<R: Real> Narrow<R> {
     }
 
     fn write_speeds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
-        let columns = [&bodies.vx, &bodies.vy, &bodies.radius];
+        let columns = [&bodies.vx, &bodies.vy, &bodies.radius, &bodies.core];
         if self.few {
             for slot in self.wanted.iter().map(|&slot| slot as usize) {
-                let [vx, vy, radius] = columns.each(|column| column[slot]);
-                self.speeds.fours_mut()[slot] = [vx, vy, radius, R::ZERO];
+                let [vx, vy, radius, core] = columns.each(|column| column[slot]);
+                let inner = if core < R::FAR { core + core } else { R::ZERO };
+                self.speeds.fours_mut()[slot] = [vx, vy, radius, inner];
             }
             return;
         }
         let columns = columns.each(Column::lanes::<L>);
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            let [vx, vy, radius] = columns.each(|column| column[at]);
+            let [vx, vy, radius, core] = columns.each(|column| column[at]);
             let rows = &mut self.speeds.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
-            L::scatter_fours([vx, vy, radius, L::zero()], rows, &IN_ORDER);
+            // The core is half of the inner radius, of what moves.
+            let inner = L::select(core.lt(L::splat(R::FAR)), core + core, L::zero());
+            L::scatter_fours([vx, vy, radius, inner], rows, &IN_ORDER);
         }
     }
 
@@ -343,11 +346,16 @@ impl<R: Real> Narrow<R> {
             if self.is_fine {
                 (a.x, b.x) = (Vec2::zero(), self.to_b_finely([a.x, b.x], slots));
             }
-            let within = if looks_ahead { margin.of(self.speeds.fours(), slots) } else { margin.still };
+            let ahead = looks_ahead.then(|| Ahead::of(self.speeds.fours(), slots));
+            let within = ahead.as_ref().map_or(margin.still, |ahead| margin.of(ahead));
             let mut found = collide(&a, &b, slots, within);
-            let apart = found.hits[0] & L::zero().lt(found.separations[0]);
-            if apart.any() && margin.stride.secs > R::ZERO {
-                passing::leave_out(&mut found, bodies, slots, apart.bits(), margin.stride);
+            if let Some(ahead) = ahead {
+                let doubtful = ahead.may_pass(&found, b.x - a.x, margin.stride);
+                if doubtful != 0 {
+                    let separations = found.separations[0];
+                    found.hits =
+                        passing::staying(found.hits, separations, bodies, slots, doubtful, margin.stride);
+                }
             }
             if found.hits[0].any() {
                 self.keep(&a, &b, &found, places);
@@ -395,10 +403,42 @@ struct Margin<L: Lanes> {
 
 impl<L: Lanes> Margin<L> {
     #[inline(always)]
-    fn of(self, speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> L {
+    fn of(&self, ahead: &Ahead<L>) -> L {
+        let path = ahead.velocity.length_squared().sqrt() * self.ahead;
+        self.still + path.min(L::lit(0.5) * ahead.radius)
+    }
+}
+
+/// How the bodies of `WIDTH` pairs move.
+struct Ahead<L> {
+    /// Of B seen from A, m/s.
+    velocity: Vec2<L>,
+    /// The smaller bounding radius, metres.
+    radius: L,
+    /// The sum of the radii of discs that both cover, metres.
+    inner: L,
+}
+
+impl<L: Lanes> Ahead<L> {
+    #[inline(always)]
+    fn of(speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> Self {
         let [a, b] = slots.each(|slots| L::gather_fours(speeds, slots));
-        let path = Vec2::new(b[0] - a[0], b[1] - a[1]).length_squared().sqrt() * self.ahead;
-        self.still + path.min(L::lit(0.5) * a[2].min(b[2]))
+        let velocity = Vec2::new(b[0] - a[0], b[1] - a[1]);
+        Self { velocity, radius: a[2].min(b[2]), inner: a[3] + b[3] }
+    }
+
+    /// Which pairs are apart, come as far as that in a stride, and do not go straight at each other: of those it has to be
+    /// found out.
+    #[inline(always)]
+    fn may_pass(&self, found: &Found<L>, to_b: Vec2<L>, stride: Stride<L::Elem>) -> u32 {
+        let zero = L::zero();
+        let way = self.velocity * L::splat(stride.secs);
+        let length = way.length_squared().sqrt();
+        let [fx, fy] = stride.fallen.each(L::splat);
+        let fallen = fx.abs() + fy.abs();
+        let separation = found.separations[0];
+        let comes = separation.lt(length + fallen) & zero.lt(separation) & found.hits[0];
+        (comes & ((self.inner - fallen) * length).lt(to_b.cross(way).abs())).bits()
     }
 }
 

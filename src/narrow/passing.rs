@@ -3,48 +3,42 @@
 //! **The law.** A contact over a gap takes from the approach along its normal what is more than the gap: right for faces, which
 //! go on to all sides, wrong for corners, which do not. So a pair that is apart is a contact only if the way of the one, seen
 //! from the other, meets it: convex shapes that move straight meet if, and only if, their shadows along the way do. What turns
-//! is given what its outline may gain by that.
+//! is given what its outline may gain by that. Asked where bodies are fast enough that a margin looks ahead for them; slower ones
+//! come no nearer to a corner than its margin in a step.
 
-use super::Found;
 use crate::body::{Bodies, BodyKind, Form};
 use crate::lanes::{Lanes, Real};
-
-/// Ways shorter than this, over how far apart a pair is, say nothing of where it goes.
-const SHORT: f64 = 1e-3;
 
 /// How a step moves what is free.
 #[derive(Clone, Copy, Debug)]
 pub struct Stride<R> {
-    /// Seconds; 0 where pairs are not asked whether they pass each other.
+    /// Seconds.
     pub secs: R,
     /// What gravity adds to a way, metres.
     pub fallen: [R; 2],
 }
 
-/// Takes the pairs of `lanes` out that pass each other in a step.
+/// The hits without those of `lanes` that pass each other in a stride.
 #[cold]
 #[inline(never)]
-pub(super) fn leave_out<L: Lanes>(
-    found: &mut Found<L>,
+pub(super) fn staying<L: Lanes>(
+    hits: [L::Mask; 2],
+    separations: L,
     bodies: &Bodies<L::Elem>,
     slots: [&[u32]; 2],
     lanes: u32,
     stride: Stride<L::Elem>,
-) {
-    let separations = found.separations[0].to_array();
+) -> [L::Mask; 2] {
+    let separations = separations.to_array();
     let mut passing = [L::Elem::ZERO; 16];
-    let mut any = false;
     for lane in crate::lanes::set_lanes(lanes) {
-        let [a, b] = [0, 1].map(|end| slots[end][lane] as usize);
-        if pass(bodies, [a, b], separations[lane].to_f64(), stride) {
+        let ends = [0, 1].map(|end| slots[end][lane] as usize);
+        if pass(bodies, ends, separations[lane].to_f64(), stride) {
             passing[lane] = L::Elem::ONE;
-            any = true;
         }
     }
-    if any {
-        let stays = L::load(&passing).le(L::zero());
-        found.hits = found.hits.map(|hits| hits & stays);
-    }
+    let stays = L::load(&passing).le(L::zero());
+    hits.map(|hits| hits & stays)
 }
 
 /// Do two bodies, `separation` metres apart, pass each other within a step?
@@ -58,7 +52,8 @@ fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride
     let [wx, wy] = [way(&bodies.vx, 0), way(&bodies.vy, 1)];
     let length = wx.hypot(wy);
     let turned = [a, b].map(|slot| turning(bodies, slot) * secs);
-    if length <= SHORT * separation {
+    // What does not come that far closes nothing, and where it goes says nothing: resting bodies tremble.
+    if length <= separation {
         return false;
     }
     let across = [-wy / length, wx / length];

@@ -50,7 +50,7 @@ use serde::Deserialize;
 use super::{BodySpec, Scene, SceneError};
 use crate::force::Forces;
 use crate::joint::JointSpec;
-use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver};
+use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver, StiffFields};
 
 /// The keys of a scene file.
 #[derive(Debug, Deserialize)]
@@ -84,6 +84,7 @@ struct FileSettings {
     sleep: Option<bool>,
     max_sag: Option<f64>,
     fixed_substeps: Option<bool>,
+    stiff_fields: Option<StiffFields>,
     stiffness: Option<f64>,
     positions: Option<Precision>,
     max_speed: Option<f64>,
@@ -126,6 +127,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         sleep: asked.sleep.unwrap_or(default.sleep),
         max_sag: asked.max_sag,
         fixed_substeps: asked.fixed_substeps.unwrap_or(default.fixed_substeps),
+        stiff_fields: asked.stiff_fields,
         stiffness: asked.stiffness,
         positions: asked.positions,
         max_speed: asked.max_speed,

@@ -100,14 +100,8 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         [self.a[lane as usize], self.b[lane as usize]]
     }
 
-    /// Appends a contact; returns its lane. With `alone` no other shares its batch.
-    pub(super) fn push(
-        &mut self,
-        (place, [a, b]): (u32, [u32; 2]),
-        values: &LaneValues<L::Elem>,
-        padding: u32,
-        alone: bool,
-    ) -> u32 {
+    /// Appends a contact; returns its lane, which holds zeros. With `alone` no other shares its batch.
+    pub(super) fn push(&mut self, (place, [a, b]): (u32, [u32; 2]), padding: u32, alone: bool) -> u32 {
         if alone {
             self.used = self.len() * L::WIDTH;
         }
@@ -122,7 +116,6 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
             self.b.resize(lanes, 0);
         }
         (self.place[lane], self.a[lane], self.b[lane]) = (place, a, b);
-        self.constraints[lane / L::WIDTH].set_lane(lane % L::WIDTH, values);
         self.used += 1;
         lane as u32
     }
@@ -158,6 +151,12 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
     /// Impulses of a lane: of both points, along the tangent, –; N·s.
     pub(super) fn impulses(&self, lane: u32) -> [L::Elem; 4] {
         self.constraints[lane as usize / L::WIDTH].impulses(lane as usize % L::WIDTH)
+    }
+
+    /// Changes the impulses of a lane that is to be prepared; N·s.
+    pub(super) fn set_impulses(&mut self, lane: u32, row: [L::Elem; 4]) {
+        self.constraints[lane as usize / L::WIDTH].set_impulses(lane as usize % L::WIDTH, row);
+        self.touch(lane);
     }
 
     /// Changes what a lane holds.

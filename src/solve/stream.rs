@@ -21,10 +21,10 @@ use std::ops::Range;
 
 use super::batches::{Batches, Ends, Visit};
 use super::color::{COLORS, Colors};
-use super::constraint::{Constraint, LANE_VALUES, LaneValues, Side, at};
+use super::constraint::{Constraint, LaneValues, Side, at};
 use super::substep_group::SubstepGroups;
 use crate::body::Bodies;
-use crate::contact::{Changed, Home, Manifolds, impulse};
+use crate::contact::{Changed, Home, Manifolds};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
@@ -68,14 +68,21 @@ impl<L: Lanes> List<L> {
     fn is_fresh(&self, home: Home) -> bool {
         if home.two { self.two.is_fresh(home.lane) } else { self.one.is_fresh(home.lane) }
     }
-    /// Changes what a lane holds; it is to be prepared.
-    fn set_lane(&mut self, home: Home, values: &LaneValues<L::Elem>) {
+    /// Changes what a lane holds.
+    fn hold(&mut self, home: Home, values: &LaneValues<L::Elem>) {
         if home.two {
             self.two.set_lane(home.lane, values);
         } else {
             self.one.set_lane(home.lane, values);
         }
-        self.touch(home);
+    }
+    /// Gives a lane these impulses, N·s; it is to be prepared.
+    fn set_impulses(&mut self, home: Home, row: [L::Elem; 4]) {
+        if home.two {
+            self.two.set_impulses(home.lane, row);
+        } else {
+            self.one.set_impulses(home.lane, row);
+        }
     }
     #[inline(always)]
     fn touch(&mut self, home: Home) {
@@ -138,17 +145,6 @@ impl<L: Lanes> Default for Stream<L> {
     }
 }
 
-/// What a lane holds before it is prepared: impulses N·s, as if masses were 1.
-fn impulses_alone<R: Real>(row: [R; 4]) -> LaneValues<R> {
-    let mut values = [R::ZERO; LANE_VALUES];
-    for k in 0..2 {
-        values[at::MASS[k]] = R::ONE;
-        values[at::VELOCITY_IMPULSE[k]] = row[impulse::NORMAL + k];
-    }
-    values[at::TANGENT_IMPULSE] = row[impulse::TANGENT];
-    values
-}
-
 impl<L: Lanes> Stream<L> {
     /// Forgets all contacts.
     pub fn clear(&mut self) {
@@ -179,8 +175,7 @@ impl<L: Lanes> Stream<L> {
             let slots = manifolds.slots(place as usize);
             let color = self.colors.take(slots, bodies);
             let list = groups.of_pair(slots) * LISTS + color;
-            let values = impulses_alone(manifolds.impulses()[place as usize]);
-            self.put(list, place, &values, manifolds);
+            self.put(list, place, manifolds);
         }
         self.picked = comers;
         for number in 0..self.lists.len() {

@@ -25,6 +25,7 @@ mod engine {
     mod impacts;
     mod interface;
     mod joints;
+    mod loads;
     mod motion_laws;
     mod motion_orders;
     mod motion_skips;
@@ -33,6 +34,7 @@ mod engine {
     mod oracle_narrow;
     mod paces;
     mod refusals;
+    mod restless;
     mod rooms;
     mod scenes;
     mod seams;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use lamina2d::scene::{Scene, SceneError};
-use lamina2d::settings::{Integrator, Settings, Solver};
+use lamina2d::settings::{Integrator, Settings, Solver, StiffFields};
 
 use super::contact::Experiment;
 use crate::cases::{self, Exact, by_name, smooth};
@@ -31,7 +31,10 @@ impl Method {
     #[must_use]
     pub fn settings(self, settings: Settings) -> Settings {
         let Self { integrator, solver, substeps, stiffness } = self;
-        Settings { integrator, solver: solver.unwrap_or(settings.solver), substeps, stiffness, ..settings }
+        // What a method does, not what is done where it cannot.
+        let stiff_fields = Some(StiffFields::Scheme);
+        let solver = solver.unwrap_or(settings.solver);
+        Settings { integrator, solver, substeps, stiffness, stiff_fields, ..settings }
     }
 }
 

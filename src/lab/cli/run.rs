@@ -9,7 +9,7 @@ use lamina::report::Timing;
 use lamina2d::measure::{Counts, Stage};
 use lamina2d::record::Recorder;
 use lamina2d::scene::Scene;
-use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver};
+use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver, StiffFields};
 use lamina2d::simulation::{Simulation, simulate};
 use lamina2d::world::StepError;
 use serde_json::{Map, Value, json};
@@ -68,6 +68,10 @@ pub(crate) struct Args {
     /// Give no island more substeps than others, though a slender stack may buckle with them.
     #[arg(long)]
     fixed_substeps: bool,
+    /// What advances a body whose fields its scheme cannot follow: what they do exactly, or the scheme all the same [default:
+    /// exact].
+    #[arg(long)]
+    stiff_fields: Option<StiffFields>,
     /// Stiffness of soft contacts: their frequency as a share of the substep rate, over 0 up to 0.5 [default: 0.18].
     #[arg(long, allow_hyphen_values = true)]
     stiffness: Option<f64>,
@@ -167,6 +171,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         sleep: args.sleep || asked.sleep,
         max_sag: args.max_sag.or(asked.max_sag),
         fixed_substeps: args.fixed_substeps || asked.fixed_substeps,
+        stiff_fields: args.stiff_fields.or(asked.stiff_fields),
         stiffness: args.stiffness.or(asked.stiffness),
         positions: args.positions.or(asked.positions),
         max_speed: args.max_speed.or(asked.max_speed),
@@ -251,6 +256,7 @@ fn describe(
                 map.extend(asked.map(|asked| (name.to_owned(), json!(asked))));
             }
             map.extend(settings.fixed_substeps.then(|| ("fixed_substeps".to_owned(), json!(true))));
+            map.extend(settings.stiff_fields.map(|asked| ("stiff_fields".to_owned(), json!(asked))));
             map.extend(settings.positions.map(|asked| ("positions".to_owned(), json!(asked))));
             Ok(map)
         }

@@ -51,6 +51,17 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         [of(&self.points[0]), second, at(&self.tangent_impulse), L::Elem::ZERO]
     }
 
+    /// Changes the impulses of one lane that is to be prepared: N·s, as if masses were 1.
+    pub(in crate::solve) fn set_impulses(&mut self, k: usize, row: [L::Elem; 4]) {
+        let put =
+            |value: &mut L, to: L::Elem| cast_slice_mut::<L, L::Elem>(std::slice::from_mut(value))[k] = to;
+        for (point, impulse) in self.points.iter_mut().zip(row) {
+            put(&mut point.mass, L::Elem::ONE);
+            put(&mut point.velocity_impulse, impulse);
+        }
+        put(&mut self.tangent_impulse, row[2]);
+    }
+
     /// Changes what one lane holds.
     pub(in crate::solve) fn set_lane(&mut self, k: usize, lane: &LaneValues<L::Elem>) {
         self.change(|at, value| cast_slice_mut::<L, L::Elem>(std::slice::from_mut(value))[k] = lane[at]);

@@ -1,6 +1,6 @@
 //! How contacts come into lanes, move between them, and leave.
 
-use super::{COLORS, JOIN, LANE_VALUES, LISTS, LaneValues, List, Stream, at, impulses_alone};
+use super::{COLORS, JOIN, LISTS, LaneValues, List, Stream, at};
 use crate::contact::{Home, Manifolds, gap, impulse};
 use crate::lanes::{Lanes, Real};
 use crate::solve::substep_group::SubstepGroups;
@@ -56,13 +56,13 @@ impl<L: Lanes> Stream<L> {
                 manifolds.homes_mut()[place] = Home::NONE;
                 continue;
             }
-            let values = impulses_alone(manifolds.impulses()[place]);
+            let row = manifolds.impulses()[place];
             let list = &mut self.lists[home.list as usize];
             if home.two == (points == 2 || list.joined) {
-                list.set_lane(home, &values);
+                list.set_impulses(home, row);
             } else {
                 self.remove_lane(home, manifolds);
-                self.put(home.list as usize, changed.place, &values, manifolds);
+                self.put(home.list as usize, changed.place, manifolds);
             }
         }
         self.recoded = recoded;
@@ -130,7 +130,8 @@ impl<L: Lanes> Stream<L> {
                 }
             }
             let list = groups.of_pair(slots) * LISTS + home.list as usize % LISTS;
-            let home = self.place_in(list, place, &values, manifolds);
+            let home = self.place_in(list, place, manifolds);
+            self.lists[list].hold(home, &values);
             if stale {
                 self.touch(home);
             }
@@ -167,7 +168,8 @@ impl<L: Lanes> Stream<L> {
             let home = manifolds.homes()[place as usize];
             let (values, stale) = (self.lane(home), self.lists[home.list as usize].is_stale(home));
             self.remove_lane(home, manifolds);
-            let home = self.place_in(number, place, &values, manifolds);
+            let home = self.place_in(number, place, manifolds);
+            self.lists[number].hold(home, &values);
             if stale {
                 self.touch(home);
             }
@@ -175,34 +177,22 @@ impl<L: Lanes> Stream<L> {
         self.picked = movers;
     }
 
-    /// Takes a contact into a list, to be prepared.
-    pub(super) fn put(
-        &mut self,
-        list: usize,
-        place: u32,
-        values: &LaneValues<L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-    ) {
-        let home = self.place_in(list, place, values, manifolds);
-        self.touch(home);
+    /// Takes a contact into a list, to be prepared with the impulses that its pair's row holds.
+    pub(super) fn put(&mut self, list: usize, place: u32, manifolds: &mut Manifolds<L::Elem>) {
+        let home = self.place_in(list, place, manifolds);
+        self.lists[list].set_impulses(home, manifolds.impulses()[place as usize]);
         self.outdated = true;
     }
 
-    fn place_in(
-        &mut self,
-        number: usize,
-        place: u32,
-        values: &LaneValues<L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-    ) -> Home {
+    fn place_in(&mut self, number: usize, place: u32, manifolds: &mut Manifolds<L::Elem>) -> Home {
         let alone = number % LISTS == COLORS;
         let list = &mut self.lists[number];
         let two = alone || list.joined || manifolds.code(place as usize).points() == 2;
         let contact = (place, manifolds.slots(place as usize));
         let lane = if two {
-            list.two.push(contact, values, manifolds.padding(), alone)
+            list.two.push(contact, manifolds.padding(), alone)
         } else {
-            list.one.push(contact, values, manifolds.padding(), false)
+            list.one.push(contact, manifolds.padding(), false)
         };
         let home = Home { list: number as u16, two, lane };
         manifolds.homes_mut()[place as usize] = home;
@@ -255,7 +245,7 @@ pub(super) fn impulses_of<R: Real>(values: &LaneValues<R>) -> [R; 4] {
 }
 
 /// Writes gaps and impulses of a lane to a pair's rows.
-pub(super) fn write<R: Real>(manifolds: &mut Manifolds<R>, place: usize, values: &[R; LANE_VALUES]) {
+pub(super) fn write<R: Real>(manifolds: &mut Manifolds<R>, place: usize, values: &LaneValues<R>) {
     const { assert!(impulse::NORMAL == 0 && impulse::TANGENT == 2) };
     manifolds.impulses_mut()[place] = impulses_of(values);
     for k in 0..2 {

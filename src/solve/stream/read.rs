@@ -2,7 +2,7 @@
 //! pairs.
 
 use super::moves::{impulses_of, write};
-use super::{LaneValues, Stream, at, impulses_alone};
+use super::{LaneValues, Stream, at};
 use crate::contact::{ContactRow, Home, Manifolds};
 use crate::lanes::Lanes;
 
@@ -68,8 +68,8 @@ impl<L: Lanes> Stream<L> {
         for &place in manifolds.touching() {
             let home = manifolds.homes()[place as usize];
             if home.is_some() {
-                let values = impulses_alone(manifolds.impulses()[place as usize]);
-                self.lists[home.list as usize].set_lane(home, &values);
+                let row = manifolds.impulses()[place as usize];
+                self.lists[home.list as usize].set_impulses(home, row);
             }
         }
     }

@@ -220,7 +220,9 @@ fn a_state_that_turns_non_finite_stops_the_run_with_step_body_and_stage() {
     let pushed = format!("[[body]]\nshape = {{ circle = 1 }}\nposition = [9, 0]\n{light}force = [1e38, 0]");
     run_file(&pushed, &[]).fails(1, &["scene.toml", "step 1", "body 1", "vx = inf", "integrate"]);
     // An oscillator far beyond its stable step doubles again and again.
-    let shaken = format!("{light}velocity = [1, 0]\n[forces.spring]\nanchor = [0, 0]\nstiffness = 1e6");
+    let shaken = format!(
+        "{light}velocity = [1, 0]\n[forces.spring]\nanchor = [0, 0]\nstiffness = 1e6\n[settings]\nstiff_fields = \"scheme\""
+    );
     run_file(&shaken, &[]).fails(1, &["body 0", "integrate"]);
     lamina(&["run", "stack", "--dt", "1e30"]).fails(1, &["stack/10", "step 1", "body "]);
 }

@@ -203,7 +203,7 @@ fn a_full_disk_ends_a_recording_and_keeps_what_is_written() {
 fn a_run_that_breaks_leaves_a_whole_recording() {
     let folder = folder();
     let [scene, path] = ["a.toml", "a.mcap"].map(|name| folder.path().join(name));
-    let text = "[forces]\nspring = { anchor = [0, 0], stiffness = 1e9 }\n[[body]]\nshape = { circle = 0.5 }\nposition = [1, 0]\n";
+    let text = "[settings]\nstiff_fields = \"scheme\"\n[forces]\nspring = { anchor = [0, 0], stiffness = 1e9 }\n[[body]]\nshape = { circle = 0.5 }\nposition = [1, 0]\n";
     std::fs::write(&scene, text).unwrap();
     let args = ["run", scene.to_str().unwrap(), "--record", path.to_str().unwrap(), "--every", "1000"];
     let broken = lamina(&args);
