@@ -7,7 +7,7 @@
 //! What happens within a step happens in the order of its instants; ties go by slots.
 //!
 //! Whom it may meet: every static and kinematic body, and of dynamic ones those it has a candidate pair with, which reach as
-//! far as both move. Gravity is reckoned in: a body that meets something at the share t of a step has by then the velocity
+//! far as both move; none of those under a solver that hears of overlaps alone (`impulse`), whose pairs do not. Gravity is reckoned in: a body that meets something at the share t of a step has by then the velocity
 //! of its end less g·(1 − t)·dt.
 //!
 //! # Time of impact

@@ -234,12 +234,14 @@ impl<L: Lanes> World<L> {
             moved
         };
         self.laws.fields = fields;
+        let margin = needs.margin(solver);
         let around = Around {
             skin_m: needs.touch(),
-            margin: needs.margin(solver),
+            margin,
             dt_secs,
             gravity: self.laws.forces.gravity.unwrap_or_default(),
-            pairs: self.broad.pairs(),
+            // Without a margin they reach no further than bodies do now.
+            pairs: if margin > L::Elem::ZERO { self.broad.pairs() } else { &[] },
             apart: self.broad.kept_apart(),
             seams: self.narrow.seams(),
         };

@@ -1,7 +1,6 @@
 //! What holds of many bodies together, and of energy.
 
 use lamina2d::scene::similar::enlarged;
-use lamina2d::settings::Settings;
 use lamina2d::simulation::BodyState;
 
 use super::trial::{Trial, relative, worst};
@@ -153,9 +152,7 @@ pub(super) fn pressure(trial: &Trial<'_>) -> anyhow::Result<f64> {
 
 /// B28: collisions per disc and second over 2√π·nσχ√(T/m), χ = (1 − 7φ/16)/(1 − φ)² (Enskog).
 pub(super) fn collisions(trial: &Trial<'_>) -> anyhow::Result<f64> {
-    // Counted by changes of velocity, once a step: who is swept on within a step meets several times in it.
-    let settings = Settings { continuous: false, ..trial.settings };
-    let (sums, _) = gas(&Trial { settings, ..*trial })?;
+    let (sums, _) = gas(trial)?;
     let [density, temperature, phi] = state(&sums);
     let chi = (1.0 - 7.0 * phi / 16.0) / (1.0 - phi).powi(2);
     let per_sec = 2.0 * std::f64::consts::PI.sqrt() * density * 2.0 * GAS.radius_m * chi * temperature.sqrt();

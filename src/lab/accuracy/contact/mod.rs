@@ -325,10 +325,11 @@ pub(super) const CASES: &[Case] = &[
         ensembles::pressure,
         &GAS_1E2,
     )),
+    // As long as makes the sample's own scatter half a percent: over 40 s another course of the same gas was 3 % off.
     heavy(case(
         ["b28_collisions", "B28", "how often hard discs meet"],
         "b28_gas",
-        40,
+        160,
         ensembles::collisions,
         &GAS_1E2,
     )),
