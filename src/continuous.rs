@@ -331,7 +331,9 @@ impl<R: Real> Continuous<R> {
             way.sweep.after(over)
         };
         let (own_sweep, their_sweep) = (from(own), from(their));
-        if !own_sweep.may_meet(&their_sweep, &own.reach) {
+        // Bodies that come no further than half of both are deep do not pass through each other: the next step's contact holds.
+        let way = (own_sweep.moved - their_sweep.moved).length();
+        if way <= own.reach.core + their.reach.core || !own_sweep.may_meet(&their_sweep, &own.reach) {
             return None;
         }
         match approach(&own_sweep, &their_sweep, &own.reach) {

@@ -20,7 +20,7 @@ pub(super) struct Reach {
     /// Bodies that end their way no nearer than this go it to its end.
     pub(super) clear: f64,
     /// Radius of the disc about the centroid that never gets in, metres.
-    core: f64,
+    pub(super) core: f64,
 }
 
 impl Reach {
