@@ -32,6 +32,9 @@ pub struct Ends<'a> {
     pub fresh: bool,
 }
 
+/// Contacts that a list has room for when it gets its first.
+const ROOM: usize = 64;
+
 /// Batches of contacts solved with the same number of points.
 #[derive(Clone, Debug)]
 pub(super) struct Batches<L, const POINTS: usize> {
@@ -107,6 +110,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         }
         let lane = self.used;
         if lane == self.len() * L::WIDTH {
+            self.make_room();
             self.constraints.push(Constraint::nothing());
             self.stale.push(0);
             self.fresh.push(false);
@@ -118,6 +122,20 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         (self.place[lane], self.a[lane], self.b[lane]) = (place, a, b);
         self.used += 1;
         lane as u32
+    }
+
+    /// Room to spare, so that a list that wavers does not allocate.
+    fn make_room(&mut self) {
+        if self.constraints.capacity() > self.len() {
+            return;
+        }
+        let more = self.len().max(ROOM.div_ceil(L::WIDTH));
+        self.constraints.reserve(more);
+        self.stale.reserve(more);
+        self.fresh.reserve(more);
+        for list in [&mut self.place, &mut self.a, &mut self.b] {
+            list.reserve(more * L::WIDTH);
+        }
     }
 
     /// Takes a contact out. The last lane moves to its place: returns the pair that has moved.
