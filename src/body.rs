@@ -36,6 +36,7 @@ pub use check::BodyError;
 use check::Checker;
 use drive::{Drive, Drives};
 pub(crate) use fine::fine_difference;
+pub(crate) use outline::Placed;
 pub use polygons::{HullRows, Polygons};
 pub use spec::{BodyKind, BodySpec, ShapeSpec};
 
@@ -442,17 +443,7 @@ impl<R: Real> Bodies<R> {
 
     /// [`Bodies::outline`] in the body frame.
     pub fn outline_body(&self, slot: usize) -> Vec<[f64; 2]> {
-        match self.form[slot] {
-            Form::Circle => Vec::new(),
-            Form::Box => {
-                let (hx, hy) = (self.extent_x[slot].to_f64(), self.extent_y[slot].to_f64());
-                vec![[-hx, -hy], [hx, -hy], [hx, hy], [-hx, hy]]
-            }
-            Form::Polygon => {
-                let at = self.shapes(slot).start;
-                let [x, y, ..] = &self.polygons.body[at];
-                (0..self.polygons.count[at] as usize).map(|k| [x[k].to_f64(), y[k].to_f64()]).collect()
-            }
-        }
+        let (corners, count) = self.corners_body(slot);
+        corners[..count].iter().map(glam::DVec2::to_array).collect()
     }
 }

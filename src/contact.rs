@@ -87,12 +87,9 @@ pub struct Changed {
     pub now: Code,
 }
 
-/// Where the impulse of each point comes from, of those before; see [`Changed::sources`].
-pub type Sources = [Option<usize>; 2];
-
 impl Changed {
-    /// Which points of the manifold before have the features of today's.
-    pub fn sources(&self) -> Sources {
+    /// Where the impulse of each point comes from: which point of the manifold before has the feature of today's.
+    fn sources(&self) -> [Option<usize>; 2] {
         let had = |k: usize| {
             (0..self.before.points()).rev().find(|&j| self.before.feature(j) == self.now.feature(k))
         };

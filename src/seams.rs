@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use crate::shape::MAX_VERTICES;
 
-pub(crate) use meet::{Met, Mover};
+pub(crate) use meet::Met;
 
 /// Outlines that are no further apart are flush, metres; less where a face is shorter than a few centimetres
 /// ([`FLUSH_SHARE`]).

@@ -1,4 +1,4 @@
-//! Outlines of bodies where they are, in `f64`.
+//! Outlines of bodies in `f64`: in their own frame, and where they are.
 
 use glam::DVec2;
 
@@ -6,10 +6,29 @@ use super::{Bodies, Form};
 use crate::lanes::Real;
 use crate::shape::MAX_VERTICES;
 
+/// A shape where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    /// Centroid, metres.
+    pub(crate) centre: DVec2,
+    /// Radius of a disc; 0 for outlines.
+    pub(crate) disc: f64,
+    /// Corners, world axes, from the centroid, counter-clockwise.
+    pub(crate) corners: [DVec2; MAX_VERTICES],
+    /// How many; 0 for a disc.
+    pub(crate) count: usize,
+}
+
+impl Placed {
+    /// The corners there are.
+    pub(crate) fn corners(&self) -> &[DVec2] {
+        &self.corners[..self.count]
+    }
+}
+
 impl<R: Real> Bodies<R> {
-    /// Corners of a box or polygon from its centroid, world axes, metres, counter-clockwise; how many: 0 for a circle.
-    pub(crate) fn corners(&self, slot: usize) -> ([DVec2; MAX_VERTICES], usize) {
-        let turn = DVec2::new(self.c[slot].to_f64(), self.s[slot].to_f64());
+    /// Corners of a box or polygon in the body frame, metres, counter-clockwise; how many: 0 for a circle.
+    pub(crate) fn corners_body(&self, slot: usize) -> ([DVec2; MAX_VERTICES], usize) {
         let mut corners = [DVec2::ZERO; MAX_VERTICES];
         let count = match self.form(slot) {
             Form::Circle => 0,
@@ -28,9 +47,21 @@ impl<R: Real> Bodies<R> {
                 count
             }
         };
+        (corners, count)
+    }
+
+    /// Radius of a circle, metres; 0 for boxes and polygons.
+    pub(crate) fn disc(&self, slot: usize) -> f64 {
+        if self.form(slot) == Form::Circle { self.extent_x[slot].to_f64() } else { 0.0 }
+    }
+
+    /// A body where it is.
+    pub(crate) fn placed(&self, slot: usize) -> Placed {
+        let turn = DVec2::new(self.c[slot].to_f64(), self.s[slot].to_f64());
+        let (mut corners, count) = self.corners_body(slot);
         for corner in &mut corners[..count] {
             *corner = turn.rotate(*corner);
         }
-        (corners, count)
+        Placed { centre: DVec2::from(self.place(slot)), disc: self.disc(slot), corners, count }
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::sweep::{Placed, Sweep};
-use crate::seams::{Mover, Outline};
+use super::sweep::Sweep;
+use crate::seams::Outline;
 
 /// Advances after which a body is stopped where it is known not to have met anything yet.
 const ADVANCES: usize = 64;
@@ -54,12 +54,10 @@ pub(super) fn impact(body: &Sweep, obstacle: &Sweep, reach: &Reach) -> Option<(f
 
 /// Is what a body meets at a time a part of an outline that can be touched? A face that a neighbour covers stops nobody.
 pub(super) fn touches(body: &Sweep, t: f64, outline: &Outline, reach: &Reach) -> Option<DVec2> {
-    let Placed { centre, disc, vertices, count } = body.at(t);
-    let mover = Mover { centre, disc, corners: vertices, count };
     let near = reach.target.max(0.0) + 4.0 * reach.tolerance;
     // What begins near the surface is the solver's, as it is for other pairs: it slides.
-    let begun = Mover { centre: body.x, corners: body.at(0.0).vertices, ..mover };
-    let met = outline.meet(&mover, near).filter(|met| met.outside(&begun) > reach.touching)?;
+    let begun = body.at(0.0);
+    let met = outline.meet(&body.at(t), near).filter(|met| met.outside(&begun) > reach.touching)?;
     Some(-met.normal)
 }
 

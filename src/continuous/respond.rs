@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::sweep::Placed;
-use crate::body::Bodies;
+use crate::body::{Bodies, Placed};
 use crate::lanes::Real;
 
 /// A body's motion at an instant.
@@ -34,8 +33,8 @@ fn meeting_point(a: &Placed, b: &Placed, axis: DVec2) -> DVec2 {
             return ([along; 2], (placed.centre + axis * most).dot(axis));
         }
         // What lies as far out but for a hair is a face.
-        let near = |v: &&DVec2| axis.dot(**v) >= most - 1e-3 * placed.vertices()[0].length();
-        let along = placed.vertices().iter().filter(near).map(|v| (placed.centre + *v).dot(tangent));
+        let near = |v: &&DVec2| axis.dot(**v) >= most - 1e-3 * placed.corners()[0].length();
+        let along = placed.corners().iter().filter(near).map(|v| (placed.centre + *v).dot(tangent));
         let ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
         (ends, placed.centre.dot(axis) + most)
     };

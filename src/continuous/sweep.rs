@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Reach;
-use crate::body::{Bodies, Form};
+use crate::body::{Bodies, Placed};
 use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::motion::Fast;
@@ -53,28 +53,13 @@ impl Sweep {
     }
 
     pub(super) fn shape<R: Real>(bodies: &Bodies<R>, slot: usize) -> Self {
-        let (hx, hy) = (bodies.extent_x[slot].to_f64(), bodies.extent_y[slot].to_f64());
-        let mut vertices = [DVec2::ZERO; MAX_VERTICES];
-        let (disc, count) = match bodies.form(slot) {
-            Form::Circle => (hx, 0),
-            Form::Box => {
-                let corners = [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].each(DVec2::from);
-                vertices[..4].copy_from_slice(&corners);
-                (0.0, 4)
-            }
-            Form::Polygon => {
-                let at = bodies.shapes(slot).start;
-                let [x, y, ..] = &bodies.polygons.body[at];
-                vertices = crate::each::indexed(|k| DVec2::new(x[k].to_f64(), y[k].to_f64()));
-                (0.0, usize::from(bodies.polygons.count[at]))
-            }
-        };
+        let (vertices, count) = bodies.corners_body(slot);
         Self {
             x: DVec2::ZERO,
             rot: Rot { c: 1.0, s: 0.0 },
             moved: DVec2::ZERO,
             angle: 0.0,
-            disc,
+            disc: bodies.disc(slot),
             radius: bodies.radius[slot].to_f64(),
             vertices,
             count,
@@ -125,7 +110,7 @@ impl Sweep {
         Placed {
             centre: self.x + self.moved * t,
             disc: self.disc,
-            vertices: self.vertices.each(turned),
+            corners: self.vertices.each(turned),
             count: self.count,
         }
     }
@@ -162,31 +147,17 @@ impl Wall {
     }
 }
 
-/// A shape where it is.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Placed {
-    pub(super) centre: DVec2,
-    pub(super) disc: f64,
-    /// About the centre, world axes.
-    pub(super) vertices: [DVec2; MAX_VERTICES],
-    pub(super) count: usize,
-}
-
 impl Placed {
-    pub(super) fn vertices(&self) -> &[DVec2] {
-        &self.vertices[..self.count]
-    }
-
     /// How far the shape reaches from its centre along `axis`.
     pub(super) fn extent(&self, axis: DVec2) -> f64 {
-        let corners = self.vertices().iter().map(|v| axis.dot(*v));
+        let corners = self.corners().iter().map(|v| axis.dot(*v));
         if self.count == 0 { self.disc } else { corners.fold(f64::MIN, f64::max) }
     }
 
     /// Outward unit normals of the faces.
     pub(super) fn normals(&self) -> impl Iterator<Item = DVec2> + '_ {
-        let next = self.vertices().iter().cycle().skip(1);
-        self.vertices().iter().zip(next).map(|(&p, &q)| -(q - p).perp().normalize())
+        let next = self.corners().iter().cycle().skip(1);
+        self.corners().iter().zip(next).map(|(&p, &q)| -(q - p).perp().normalize())
     }
 
     /// From a disc's centre towards the nearest vertex, or the centre of the other disc.
@@ -196,7 +167,7 @@ impl Placed {
             let b = to + *b;
             if b.length_squared() < a.length_squared() { b } else { a }
         };
-        let start = other.vertices().first().map_or(to, |v| to + *v);
-        other.vertices().iter().fold(start, nearer).normalize_or(DVec2::Y)
+        let start = other.corners().first().map_or(to, |v| to + *v);
+        other.corners().iter().fold(start, nearer).normalize_or(DVec2::Y)
     }
 }

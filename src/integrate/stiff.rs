@@ -116,7 +116,6 @@ impl StiffFields {
         let drag = (self.linear_drag + self.quadratic_drag * speed) * inv_mass;
         let spring = (self.spring.abs() * inv_mass).sqrt();
         let magnetic = self.magnetic.abs() * inv_mass;
-        // A spring that pushes away grows whatever is done.
         drag * h_secs > limits.drag || spring * h_secs > limits.spring || magnetic * h_secs > limits.magnetic
     }
 

@@ -66,7 +66,7 @@ pub struct Pull {
 /// How long bodies have been quiet; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub(super) struct Quiet<R: Real> {
-    /// Seconds; far below 0 while a body sleeps, so that it does not tire again.
+    /// Seconds; far below 0 while a body sleeps, so that it is not put to sleep once more.
     secs: Column<R>,
     /// Where it became quiet: x, y (metres), cos, sin.
     since: [Column<R>; 4],

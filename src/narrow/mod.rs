@@ -15,9 +15,11 @@ mod circle_box;
 mod circle_circle;
 mod circle_polygon;
 mod clip;
+mod margin;
 mod passing;
 mod polygon_polygon;
 mod seamed;
+mod todo;
 
 use crate::body::{Bodies, Form, fine_difference};
 use crate::each::Each as _;
@@ -28,7 +30,9 @@ use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real};
 use crate::seams::Seams;
 use crate::vec2::{Rot, Vec2};
 
+use margin::{Ahead, Margin};
 use polygon_polygon::Hull;
+use todo::Todo;
 
 pub use passing::Stride;
 
@@ -387,106 +391,6 @@ impl<R: Real> Narrow<R> {
         let (friction, restitution) = (a.friction.min(b.friction), a.restitution.min(b.restitution));
         let gap = [found.separations[0], found.separations[1], friction, restitution];
         self.manifolds.write(places, code, geometry, gap, &mut self.scratch);
-    }
-}
-
-/// How close is close enough.
-#[derive(Clone, Copy, Debug)]
-struct Margin<L: Lanes> {
-    /// Metres, for bodies at rest.
-    still: L,
-    /// Seconds of approach that are added.
-    ahead: L,
-    /// How far bodies may go.
-    stride: Stride<L::Elem>,
-}
-
-impl<L: Lanes> Margin<L> {
-    #[inline(always)]
-    fn of(&self, ahead: &Ahead<L>) -> L {
-        let path = ahead.velocity.length_squared().sqrt() * self.ahead;
-        self.still + path.min(L::lit(0.5) * ahead.radius)
-    }
-}
-
-/// How the bodies of `WIDTH` pairs move.
-struct Ahead<L> {
-    /// Of B seen from A, m/s.
-    velocity: Vec2<L>,
-    /// The smaller bounding radius, metres.
-    radius: L,
-    /// The sum of the radii of discs that both cover, metres.
-    inner: L,
-}
-
-impl<L: Lanes> Ahead<L> {
-    #[inline(always)]
-    fn of(speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> Self {
-        let [a, b] = slots.each(|slots| L::gather_fours(speeds, slots));
-        let velocity = Vec2::new(b[0] - a[0], b[1] - a[1]);
-        Self { velocity, radius: a[2].min(b[2]), inner: a[3] + b[3] }
-    }
-
-    /// Which pairs are apart, come as far as that in a stride, and do not go straight at each other: of those it has to be
-    /// found out.
-    #[inline(always)]
-    fn may_pass(&self, found: &Found<L>, to_b: Vec2<L>, stride: Stride<L::Elem>) -> u32 {
-        let zero = L::zero();
-        let way = self.velocity * L::splat(stride.secs);
-        let length = way.length_squared().sqrt();
-        let [fx, fy] = stride.fallen.each(L::splat);
-        let fallen = fx.abs() + fy.abs();
-        let separation = found.separations[0];
-        let comes = separation.lt(length + fallen) & zero.lt(separation) & found.hits[0];
-        (comes & ((self.inner - fallen) * length).lt(to_b.cross(way).abs())).bits()
-    }
-}
-
-/// The pairs of one bucket to look at: A, B and places apart so that a batch's are three slices.
-#[derive(Clone, Debug, Default)]
-struct Todo {
-    a: Vec<u32>,
-    b: Vec<u32>,
-    place: Vec<u32>,
-    /// Pairs; behind them the world against itself, up to whole lanes at every width.
-    len: usize,
-}
-
-impl Todo {
-    fn fill<R: Real>(&mut self, manifolds: &Manifolds<R>, bucket: usize, has_moved: MovedBodies<'_>) {
-        let places = manifolds.bucket(bucket);
-        if places.is_empty() {
-            self.len = 0;
-            return;
-        }
-        for list in [&mut self.a, &mut self.b, &mut self.place] {
-            if list.len() < places.len() + 16 {
-                list.resize(places.len() + 16, 0);
-            }
-        }
-        let mut chosen = 0;
-        for at in places {
-            let [a, b] = manifolds.slots(at);
-            let look = match has_moved {
-                MovedBodies::All => true,
-                MovedBodies::These(bodies) => {
-                    bodies[a as usize] | bodies[b as usize] | !manifolds.is_known(at)
-                }
-            };
-            // Written always, kept when wanted: no branch to mispredict.
-            (self.a[chosen], self.b[chosen], self.place[chosen]) = (a, b, at as u32);
-            chosen += usize::from(look);
-        }
-        self.end(chosen, manifolds);
-    }
-
-    /// So many pairs are all: padding follows.
-    fn end<R: Real>(&mut self, chosen: usize, manifolds: &Manifolds<R>) {
-        self.len = chosen;
-        let padding = chosen..chosen.next_multiple_of(16);
-        self.a[padding.clone()].fill(0);
-        self.b[padding.clone()].fill(0);
-        self.place[padding].fill(manifolds.spill());
     }
 }
 

@@ -77,9 +77,9 @@ fn turning<R: Real>(bodies: &Bodies<R>, slot: usize) -> f64 {
 
 /// How far a body reaches from its centroid along a direction, metres.
 fn extent<R: Real>(bodies: &Bodies<R>, slot: usize, along: [f64; 2]) -> f64 {
-    let (corners, count) = bodies.corners(slot);
-    if count == 0 {
-        return bodies.extent_x[slot].to_f64();
+    let placed = bodies.placed(slot);
+    if placed.count == 0 {
+        return placed.disc;
     }
-    corners[..count].iter().map(|corner| corner.x * along[0] + corner.y * along[1]).fold(f64::MIN, f64::max)
+    placed.corners().iter().map(|corner| corner.x * along[0] + corner.y * along[1]).fold(f64::MIN, f64::max)
 }

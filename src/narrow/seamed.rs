@@ -6,14 +6,7 @@ use super::Narrow;
 use crate::body::Bodies;
 use crate::contact::Code;
 use crate::lanes::{ROW, Real};
-use crate::seams::{Met, Mover, Seams};
-
-/// The body in a slot, as what may touch an outline.
-pub(crate) fn mover<R: Real>(bodies: &Bodies<R>, slot: usize) -> Mover {
-    let (corners, count) = bodies.corners(slot);
-    let disc = if count == 0 { bodies.extent_x[slot].to_f64() } else { 0.0 };
-    Mover { centre: DVec2::from(bodies.place(slot)), disc, corners, count }
-}
+use crate::seams::{Met, Seams};
 
 impl<R: Real> Narrow<R> {
     /// Takes in which static outlines are covered in part: bodies have changed.
@@ -62,7 +55,7 @@ impl<R: Real> Narrow<R> {
             let speed = |slot: usize| DVec2::new(bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64());
             let closing = (speed(other) - speed(own)).length() * ahead_secs.to_f64();
             let most = 0.5 * bodies.radius[other].to_f64().min(bodies.radius[own].to_f64());
-            let met = outline.meet(&mover(bodies, other), margin.to_f64() + closing.min(most));
+            let met = outline.meet(&bodies.placed(other), margin.to_f64() + closing.min(most));
             match met {
                 Some(met) => self.keep_met(bodies, place, slots.map(|slot| slot as usize), end, &met),
                 None => self.manifolds.write_apart(&[place]),

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{FLUSH_M, FLUSH_SHARE, Face, Outline, Seams};
-use crate::body::{Bodies, BodyKind};
+use crate::body::{Bodies, BodyKind, Placed};
 use crate::lanes::Real;
 use crate::shape::MAX_VERTICES;
 
@@ -66,11 +66,10 @@ impl Seams {
 
 /// The outline of a box or polygon, all of it exposed.
 fn outline_of<R: Real>(bodies: &Bodies<R>, slot: usize) -> Option<Outline> {
-    let (corners, count) = bodies.corners(slot);
+    let Placed { centre, corners, count, .. } = bodies.placed(slot);
     if count == 0 {
         return None;
     }
-    let centre = DVec2::from(bodies.place(slot));
     let corners = corners.map(|corner| centre + corner);
     let mut faces = [Face::default(); MAX_VERTICES];
     for k in 0..count {

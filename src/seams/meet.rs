@@ -3,22 +3,10 @@
 use glam::DVec2;
 
 use super::{Face, Outline};
+use crate::body::Placed;
 use crate::shape::MAX_VERTICES;
 
-/// A body that may touch an outline.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mover {
-    /// Centroid, metres.
-    pub(crate) centre: DVec2,
-    /// Radius of a disc; 0 for outlines.
-    pub(crate) disc: f64,
-    /// Corners, world axes, from the centroid, counter-clockwise.
-    pub(crate) corners: [DVec2; MAX_VERTICES],
-    /// How many; 0 for a disc.
-    pub(crate) count: usize,
-}
-
-impl Mover {
+impl Placed {
     fn corner(&self, k: usize) -> DVec2 {
         self.centre + self.corners[k % self.count]
     }
@@ -57,10 +45,10 @@ pub(crate) struct Met {
 
 impl Met {
     /// How far a body is outside of the surface that this contact is with, along its normal, metres.
-    pub(crate) fn outside(&self, mover: &Mover) -> f64 {
+    pub(crate) fn outside(&self, mover: &Placed) -> f64 {
         let [first, _] = self.points;
         let surface = (first.at - self.normal * (0.5 * first.separation)).dot(self.normal);
-        let corners = mover.corners[..mover.count].iter().map(|corner| corner.dot(self.normal));
+        let corners = mover.corners().iter().map(|corner| corner.dot(self.normal));
         let lowest = if mover.count == 0 { -mover.disc } else { corners.fold(f64::MAX, f64::min) };
         mover.centre.dot(self.normal) + lowest - surface
     }
@@ -77,7 +65,7 @@ fn feature(of_mover: bool, face: usize, other: usize, end: usize) -> u16 {
 
 impl Outline {
     /// The contact with a body, of points closer than `margin`, metres.
-    pub(crate) fn meet(&self, mover: &Mover, margin: f64) -> Option<Met> {
+    pub(crate) fn meet(&self, mover: &Placed, margin: f64) -> Option<Met> {
         if mover.count == 0 { self.meet_disc(mover, margin) } else { self.meet_outline(mover, margin) }
     }
 
@@ -88,7 +76,7 @@ impl Outline {
         [-beyond(k), self.faces[k].length + beyond(k + 1)]
     }
 
-    fn meet_disc(&self, mover: &Mover, margin: f64) -> Option<Met> {
+    fn meet_disc(&self, mover: &Placed, margin: f64) -> Option<Met> {
         let (centre, radius) = (mover.centre, mover.disc);
         let mut best: Option<(f64, usize)> = None;
         // From outside only what it looks at; from inside, what is nearest.
@@ -119,7 +107,7 @@ impl Outline {
         None
     }
 
-    fn meet_outline(&self, mover: &Mover, margin: f64) -> Option<Met> {
+    fn meet_outline(&self, mover: &Placed, margin: f64) -> Option<Met> {
         let corners = || (0..mover.count).map(|k| mover.corner(k));
         let lowest = |face: &Face| corners().map(|at| face.outside(at)).fold(f64::MAX, f64::min);
         // Along any face, covered or not, bodies may be told apart.
@@ -164,7 +152,7 @@ impl Outline {
     }
 
     /// An exposed face as the reference: points of the other's edge that faces it.
-    fn on_own_face(&self, k: usize, mover: &Mover, margin: f64) -> Option<Met> {
+    fn on_own_face(&self, k: usize, mover: &Placed, margin: f64) -> Option<Met> {
         let face = &self.faces[k];
         let facing = |j: &usize| (mover.corner(j + 1) - mover.corner(*j)).normalize().dot(face.tangent);
         let j = (0..mover.count).min_by(|a, b| facing(a).total_cmp(&facing(b)))?;

@@ -208,7 +208,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         self.place[self.used..].fill(padding);
     }
 
-    /// From now on displacements are news to all constraints.
+    /// Marks every constraint's separation as out of date.
     pub(super) fn age(&mut self) {
         self.fresh.fill(false);
     }

@@ -51,7 +51,7 @@ pub(crate) struct Bouncing<L: Lanes> {
     pub(super) looked: bool,
     /// Something bounces in this step.
     pub(super) any: bool,
-    /// Rounds of joints and contacts by which velocities settle after an impact on what joints hold.
+    /// Rounds of joints and contacts by which velocities are relaxed after an impact on what joints hold.
     pub(super) rounds: u32,
     /// Per slot, whether joints hold its body.
     jointed: Vec<bool>,

@@ -188,7 +188,7 @@ impl<L: Lanes> ContactSolver<L> for Soft {
             if let Some(joints) = &mut substep.joints
                 && round > 0
             {
-                joints.settle(rows, &how);
+                joints.relax_velocities(rows, &how);
             }
             if substep.context.needs.friction {
                 substep.stream.visit(&mut Relax::<L, true> { rows, per_sec });

@@ -252,7 +252,7 @@ impl<L: Lanes> Stream<L> {
         }
     }
 
-    /// From now on displacements are news to all constraints.
+    /// Marks every constraint's separation as out of date.
     pub fn age(&mut self) {
         for &number in &self.order {
             let list = &mut self.lists[number as usize];

@@ -324,7 +324,7 @@ impl<L: Lanes> JointStream<L> {
     }
 
     /// Velocities alone once more, without bias.
-    pub(in crate::solve) fn settle(&mut self, rows: &mut [[L::Elem; 4]], how: &Stiffness<L>) {
+    pub(in crate::solve) fn relax_velocities(&mut self, rows: &mut [[L::Elem; 4]], how: &Stiffness<L>) {
         each!(self, |c, ends| {
             with_sides(rows, &ends, |a, b| c.relax(how, a, b));
         });

@@ -73,10 +73,10 @@ impl<L: Lanes> Solving<L> {
         let how = Stiffness::soft(context.plan.h_secs, context.plan.impulse_share());
         self.joints.note();
         for _ in 0..self.bouncing.rounds {
-            self.joints.settle(motion.velocity.fours_mut(), &how);
+            self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
             self.bounce(context, motion, settled);
         }
-        self.joints.settle(motion.velocity.fours_mut(), &how);
+        self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
         self.joints.restore();
     }
 

@@ -130,11 +130,7 @@ impl<L: Lanes> Stream<L> {
                 }
             }
             let list = groups.of_pair(slots) * LISTS + home.list as usize % LISTS;
-            let home = self.place_in(list, place, manifolds);
-            self.lists[list].hold(home, &values);
-            if stale {
-                self.touch(home);
-            }
+            self.carry(list, place, (&values, stale), manifolds);
         }
         self.outdated = true;
     }
@@ -168,13 +164,24 @@ impl<L: Lanes> Stream<L> {
             let home = manifolds.homes()[place as usize];
             let (values, stale) = (self.lane(home), self.lists[home.list as usize].is_stale(home));
             self.remove_lane(home, manifolds);
-            let home = self.place_in(number, place, manifolds);
-            self.lists[number].hold(home, &values);
-            if stale {
-                self.touch(home);
-            }
+            self.carry(number, place, (&values, stale), manifolds);
         }
         self.picked = movers;
+    }
+
+    /// Takes a contact into a list with what it holds, and whether its manifold was found anew.
+    fn carry(
+        &mut self,
+        list: usize,
+        place: u32,
+        (values, stale): (&LaneValues<L::Elem>, bool),
+        manifolds: &mut Manifolds<L::Elem>,
+    ) {
+        let home = self.place_in(list, place, manifolds);
+        self.lists[list].hold(home, values);
+        if stale {
+            self.touch(home);
+        }
     }
 
     /// Takes a contact into a list, to be prepared with the impulses that its pair's row holds.
