@@ -92,6 +92,10 @@ impl Sweep {
 
     /// What is left of the way from a time on.
     pub(super) fn after(&self, t: f64) -> Self {
+        // Where nothing has met anything yet all of it is left, and no attitude to be turned.
+        if t == 0.0 {
+            return *self;
+        }
         Self {
             x: self.x + self.moved * t,
             rot: self.rot.turned(self.angle * t),

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{FLUSH_M, FLUSH_SHARE, Face, Outline, Seams};
-use crate::body::{Bodies, BodyKind, Placed};
+use crate::body::{Bodies, BodyKind};
 use crate::lanes::Real;
 use crate::shape::MAX_VERTICES;
 
@@ -66,18 +66,12 @@ impl Seams {
 
 /// The outline of a box or polygon, all of it exposed.
 fn outline_of<R: Real>(bodies: &Bodies<R>, slot: usize) -> Option<Outline> {
-    let Placed { centre, corners, count, .. } = bodies.placed(slot);
+    let placed = bodies.placed(slot);
+    let count = placed.count;
     if count == 0 {
         return None;
     }
-    let corners = corners.map(|corner| centre + corner);
-    let mut faces = [Face::default(); MAX_VERTICES];
-    for k in 0..count {
-        let (start, end) = (corners[k], corners[(k + 1) % count]);
-        let length = (end - start).length();
-        let tangent = (end - start) / length;
-        faces[k] = Face { start, tangent, normal: -tangent.perp(), length, exposed: true };
-    }
+    let faces: [Face; MAX_VERTICES] = crate::each::indexed(|k| placed.face(k));
     let shortest = faces[..count].iter().map(|face| face.length).fold(f64::MAX, f64::min);
     Some(Outline { faces, count, wedges: [None; MAX_VERTICES], reach: FLUSH_M.min(FLUSH_SHARE * shortest) })
 }

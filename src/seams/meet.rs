@@ -11,8 +11,8 @@ impl Placed {
         self.centre + self.corners[k % self.count]
     }
 
-    /// A side, as an outline has them; of no length where there is none.
-    fn face(&self, j: usize) -> Face {
+    /// A side, as an outline has them: all of it exposed; of no length where there is none.
+    pub(super) fn face(&self, j: usize) -> Face {
         if j >= self.count {
             return Face::default();
         }
@@ -52,6 +52,7 @@ impl Met {
         let lowest = if mover.count == 0 { -mover.disc } else { corners.fold(f64::MAX, f64::min) };
         mover.centre.dot(self.normal) + lowest - surface
     }
+
     /// One or two.
     pub(crate) fn points(&self) -> &[Touch] {
         &self.points[..self.count]
