@@ -22,6 +22,7 @@ mod grow;
 mod kind;
 mod outline;
 mod polygons;
+mod put;
 mod spec;
 
 use std::ops::Range;

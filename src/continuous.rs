@@ -13,7 +13,10 @@
 //! # Time of impact
 //! Conservative advancement over separating axes (Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems,
 //! 1996, §2.3). Along a fixed axis n two bodies s apart cannot close faster than −n·(v_B − v_A) + |ω_A|·R_A +
-//! |ω_B|·R_B, so each axis promises a time without impact, and the longest of them holds. Without spin the face
+//! |ω_B|·R_B, so each axis promises a time without impact, and the longest of them holds. A face of B that turns may take
+//! its axis along: B then reaches as far along it at all times, and they close no faster than −n·(v_B − v_A) −
+//! ω_B·n⊥·(x_B − x_A) + |ω_B − ω_A|·R_A and what that changes by as n turns: |ω_B|·(2·|v_B − v_A| + |ω_B|·|x_B − x_A|). A
+//! wall ten metres long that turns would else promise hardly anything. Without spin the face
 //! normals promise the exact time; an axis that opens ends the search, so that a body that slides along a wall or
 //! passes its end is done at once. All in `f64` scalars: few bodies are fast.
 //!

@@ -88,7 +88,7 @@ impl<R: Real> Joints<R> {
     pub fn is_empty(&self) -> bool {
         self.live == 0
     }
-    /// Grows whenever a joint is inserted or removed.
+    /// Grows whenever a joint is inserted, removed or driven otherwise.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -220,6 +220,24 @@ impl<R: Real> Joints<R> {
         let reference = poses[0].1.relative(poses[1].1);
         let reference = [reference.c, reference.s];
         Ok(Joint { bodies: ends, kind, collide, anchors_body, reference, length })
+    }
+
+    /// Lets the motor of the hinge in a place run otherwise; one without torque is taken off.
+    ///
+    /// # Errors
+    /// No joint there, one that is no hinge; a speed or torque that is not finite, a torque below 0. Nothing has changed
+    /// then.
+    pub fn set_motor(&mut self, place: u32, motor: Motor) -> Result<(), JointError> {
+        let joint = place as usize;
+        Checker { joint }.motor::<R>(motor)?;
+        let at = self.places.get_mut(joint).and_then(|at| at.joint.as_mut());
+        match at.map(|at| &mut at.kind) {
+            Some(JointKind::Revolute(hinge)) => hinge.motor = Some(motor).filter(|m| m.max_torque > 0.0),
+            Some(_) => return Err(JointError::NoHinge { joint }),
+            None => return Err(JointError::NoJoint { joint }),
+        }
+        self.revision += 1;
+        Ok(())
     }
 
     /// Takes a joint out.

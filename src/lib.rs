@@ -27,7 +27,7 @@
 //! | [`scene`], [`measure`] | named scenes and scene files; times, counts, errors, hash |
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`], [`island`] | the stages, and which bodies are at rest together and sleep; none imports another's work, only what it leaves behind |
 //! | [`contact`], [`motion`], [`partition`], [`seams`] | manifolds and carried impulses; the rows and displacements of a step in progress; who belongs together; what of static outlines their neighbours cover |
-//! | [`body`], [`joint`], [`force`] | columns of bodies and what they are written down as; joints; fields |
+//! | [`body`], [`joint`], [`force`], [`event`] | columns of bodies and what they are written down as; joints; fields; what is done between steps |
 //! | [`shape`], [`settings`] | shapes and their masses; what a run may choose |
 //! | [`mod@column`], [`vec2`], [`pair`], [`clock`] | aligned columns; vectors and rotations; pairs of numbers in files; fixed steps |
 //! | [`each`], [`lanes`] | arrays mapped by loops; lanes, the only room that names `wide` |
@@ -35,6 +35,7 @@
 //! # One step
 //! | stage | reads | writes |
 //! |---|---|---|
+//! | act, where something is due or pulled | events of the scene | bodies, joints, fields, settings |
 //! | drive | pose of bodies with a pivot | their velocity |
 //! | broad | position, bounding radius, attitude of long bodies; velocity where something is fast | candidate pairs, a < b, in order |
 //! | narrow, where bodies have moved | pose, shape, velocity, pairs; which faces of statics neighbours cover | manifolds, polygons' world rows |
@@ -123,6 +124,7 @@ pub mod column;
 pub mod contact;
 mod continuous;
 mod each;
+pub mod event;
 pub mod force;
 mod integrate;
 mod island;

@@ -4,13 +4,14 @@
 use crate::body::{Bodies, BodyError, BodyId, Form};
 use crate::broad::BroadPhase;
 use crate::contact::Contact;
+use crate::event::Action;
 use crate::force::Forces;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real, f32s, f64s};
 use crate::measure::{self, Counts, Invariants, Outline, Penetration, StageTimes};
 use crate::scene::{BodyKind, BodySpec, Scene};
 use crate::settings::{Broad, Precision, Settings};
-use crate::world::{BodyTable, Snapshot, StepError, World, WorldError};
+use crate::world::{ActionError, Acts, BodyTable, Pull, Snapshot, StepError, World, WorldError};
 
 /// One body's state, spelled out in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +113,13 @@ pub trait Simulation: Send {
     /// # Errors
     /// Those of [`World::apply_impulse`].
     fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError>;
+    /// Does something before the next step; see [`World::act`]. Returns the id of a body that came.
+    ///
+    /// # Errors
+    /// Those of [`World::act`].
+    fn act(&mut self, action: &Action) -> Result<Option<BodyId>, ActionError>;
+    /// What is pulled.
+    fn pulled(&self) -> Option<&Pull>;
     /// Sets the fields; see [`World::set_forces`].
     ///
     /// # Errors
@@ -155,38 +163,38 @@ pub fn simulate(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>
 
 fn boxed<L: Lanes>(scene: &Scene, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>
 where
-    (Bodies<L::Elem>, Joints<L::Elem>): IntoWorld,
+    (Bodies<L::Elem>, Joints<L::Elem>, Acts): IntoWorld,
 {
     Ok(Box::new(World::<L>::from_scene(scene, settings)?))
 }
 
-/// Bodies and joints of a precision, into a world of any of its widths.
+/// Bodies and joints of a precision and what is yet to be done to them, into a world of any of its widths.
 pub trait IntoWorld: Sized {
-    /// Builds the world that `settings` name around these bodies and joints.
+    /// Builds the world that `settings` name around these.
     ///
     /// # Errors
     /// Settings that cannot be run with, or of another precision.
     fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError>;
 }
 
-impl IntoWorld for (Bodies<f32>, Joints<f32>) {
+impl IntoWorld for (Bodies<f32>, Joints<f32>, Acts) {
     fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
-        let (bodies, joints) = self;
+        let (bodies, joints, acts) = self;
         Ok(match settings.lanes {
-            1 => Box::new(World::<f32s::X1>::from_parts(bodies, joints, forces, settings)?),
-            4 => Box::new(World::<f32s::X4>::from_parts(bodies, joints, forces, settings)?),
-            8 => Box::new(World::<f32s::X8>::from_parts(bodies, joints, forces, settings)?),
-            _ => Box::new(World::<f32s::X16>::from_parts(bodies, joints, forces, settings)?),
+            1 => Box::new(World::<f32s::X1>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
+            4 => Box::new(World::<f32s::X4>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
+            8 => Box::new(World::<f32s::X8>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
+            _ => Box::new(World::<f32s::X16>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
         })
     }
 }
 
-impl IntoWorld for (Bodies<f64>, Joints<f64>) {
+impl IntoWorld for (Bodies<f64>, Joints<f64>, Acts) {
     fn into_world(self, forces: Forces, settings: Settings) -> Result<Box<dyn Simulation>, WorldError> {
-        let (bodies, joints) = self;
+        let (bodies, joints, acts) = self;
         Ok(match settings.lanes {
-            1 => Box::new(World::<f64s::X1>::from_parts(bodies, joints, forces, settings)?),
-            _ => Box::new(World::<f64s::X4>::from_parts(bodies, joints, forces, settings)?),
+            1 => Box::new(World::<f64s::X1>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
+            _ => Box::new(World::<f64s::X4>::from_parts(bodies, joints, forces, settings)?.with_acts(acts)),
         })
     }
 }
@@ -203,7 +211,7 @@ fn state<R: Real>(bodies: &Bodies<R>, slot: usize) -> BodyState {
 
 impl<L: Lanes> Simulation for World<L>
 where
-    (Bodies<L::Elem>, Joints<L::Elem>): IntoWorld,
+    (Bodies<L::Elem>, Joints<L::Elem>, Acts): IntoWorld,
 {
     fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
         self.step(dt_secs)
@@ -237,6 +245,12 @@ where
     }
     fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
         self.apply_impulse(id, linear, angular)
+    }
+    fn act(&mut self, action: &Action) -> Result<Option<BodyId>, ActionError> {
+        self.act(action)
+    }
+    fn pulled(&self) -> Option<&Pull> {
+        self.pulled()
     }
     fn set_forces(&mut self, forces: Forces) -> Result<(), WorldError> {
         Ok(self.set_forces(forces)?)
@@ -308,7 +322,8 @@ where
         if settings.precision.name() != <L::Elem as Real>::NAME {
             return Err(WorldError::Precision { have: <L::Elem as Real>::NAME, asked: settings.precision });
         }
-        let parts = (self.bodies().clone(), self.joints().clone().without_impulses());
+        let joints = self.joints().clone().without_impulses();
+        let parts = (self.bodies().clone(), joints, self.acts_from_now());
         parts.into_world(self.forces().after(self.time_secs()), settings)
     }
 }

@@ -1,6 +1,7 @@
 //! A world: bodies, joints, fields, and the step that advances them.
 
 mod access;
+mod act;
 mod error;
 mod inspect;
 mod made_from;
@@ -28,6 +29,7 @@ use crate::solve::{self, SceneNeeds, SolverContext, Solving};
 use made_from::MadeFrom;
 use watchdog::Watchdog;
 
+pub use act::{ActionError, Acts, Pull};
 pub use error::{StepError, WorldError};
 pub use snapshot::{BodyEntry, BodyTable, COLUMNS, Snapshot};
 pub use watchdog::EVERY as WATCHED_EVERY;
@@ -54,6 +56,7 @@ struct Laws<R: Real> {
     needs: SceneNeeds,
     /// How often other fields were set.
     revision: u64,
+    acts: Acts,
 }
 
 /// What a world has gone through.
@@ -130,6 +133,7 @@ impl<L: Lanes> World<L> {
             stiff: Stiff::default(),
             needs: SceneNeeds::default(),
             revision: 0,
+            acts: Acts::default(),
         };
         Ok(Self {
             bodies,
@@ -152,7 +156,7 @@ impl<L: Lanes> World<L> {
     /// (which [`load`](crate::scene::load) puts there).
     ///
     /// # Errors
-    /// Settings, fields, bodies or joints that cannot be run with.
+    /// Settings, fields, bodies, joints or events that cannot be run with.
     pub fn from_scene(scene: &Scene, settings: Settings) -> Result<Self, WorldError> {
         let mut world = Self::new(scene.forces, settings)?;
         let insert = |spec| world.insert(spec).map_err(SceneError::from);
@@ -165,13 +169,14 @@ impl<L: Lanes> World<L> {
             let ends = [id(spec.bodies[0])?, id(spec.bodies[1])?];
             world.insert_joint(ends, spec.kind.clone(), spec.collide).map_err(SceneError::from)?;
         }
+        world.plan(&scene.events, ids)?;
         Ok(world)
     }
 
     /// Advances by `dt_secs`, which is the step of its settings from then on: the whole frame, top to bottom.
     ///
     /// # Errors
-    /// A step that is not positive and finite (nothing changes); a state that turned NaN or infinite
+    /// A step that is not positive and finite (nothing changes); an event of the scene that cannot be done; a state that turned NaN or infinite
     /// (the world keeps it, for inspection).
     pub fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
         let rounded = L::Elem::from_f64(dt_secs);
@@ -183,6 +188,7 @@ impl<L: Lanes> World<L> {
             return Err(StepError::ShortDt { given: dt_secs, least });
         }
         self.settings.dt_secs = dt_secs;
+        self.act_before(dt_secs)?;
         self.inspect();
         self.begin_watch();
         self.bodies.drive(dt_secs);
@@ -221,8 +227,9 @@ impl<L: Lanes> World<L> {
         let exact = self.settings.stiff_fields != Some(StiffFields::Scheme);
         let lengths = [plan.h_secs, dt_secs];
         let stiff = exact && self.laws.stiff.begin(integrator, &self.bodies, begun_secs, lengths);
-        let free_flight = may_fly && !stiff;
+        let free_flight = may_fly && !stiff && !self.solving.is_paced(substeps);
         let (mut skipped, finite) = if free_flight {
+            self.solving.fly(goal.is_some_and(|(_, looked)| looked));
             self.made.forget_poses();
             self.motion.assume_fast_bodies();
             let fast = self.continuous.begin(self.settings.continuous, self.broad.pairs().len());

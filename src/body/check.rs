@@ -106,6 +106,14 @@ pub enum BodyError {
     /// Only dynamic bodies take impulses.
     #[error("body in slot {0} is not dynamic: an impulse cannot move it")]
     NotDynamic(u32),
+    /// A static body has no velocity.
+    #[error("body in slot {0} is static: it takes no velocity; make it kinematic")]
+    StaticInSlot(u32),
+    /// A pivot takes the body along.
+    #[error(
+        "body in slot {0} goes round a pivot, which says where it is and how fast; change its kind first"
+    )]
+    Driven(u32),
 }
 
 pub(super) struct InverseMass {
@@ -181,7 +189,7 @@ impl Checker {
         self.finite::<R>("velocity round the pivot", reach * spec.angular_velocity)
     }
 
-    fn finite<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
+    pub(super) fn finite<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
         if R::from_f64(value).is_finite() {
             Ok(())
         } else {
@@ -190,7 +198,7 @@ impl Checker {
     }
 
     /// Further out a squared distance would overflow, or meet the padding.
-    fn near<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
+    pub(super) fn near<R: Real>(&self, field: &'static str, value: f64) -> Result<(), BodyError> {
         if value.abs() < R::FAR.to_f64() * 1e-3 {
             return Ok(());
         }

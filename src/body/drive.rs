@@ -96,6 +96,11 @@ impl Drives {
         self.drives.push(drive);
     }
 
+    /// Does the body in `slot` go round a pivot?
+    pub(crate) fn has(&self, slot: usize) -> bool {
+        self.drives.iter().any(|drive| drive.slot == slot)
+    }
+
     /// Forgets the circle of the body in `slot`, if it has one.
     pub(crate) fn remove(&mut self, slot: usize) {
         self.drives.retain(|drive| drive.slot != slot);

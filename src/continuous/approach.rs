@@ -80,24 +80,30 @@ pub(super) fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
         let (placed_a, placed_b) = (a.at(t), b.at(t));
         let to_b = placed_b.centre - placed_a.centre;
         let (mut separation, mut nearest, mut wait, mut clear) = (f64::MIN, DVec2::Y, 0.0f64, false);
-        let mut along = |axis: DVec2| {
+        // Of the separation along an axis that turns with `b`, of whose shape it then always sees the same.
+        let (left, distance) = (1.0 - t, to_b.length());
+        let swerve = b.angle.abs() * left * (2.0 * velocity.length() + b.angle.abs() * distance);
+        let relative = if a.count == 0 { 0.0 } else { (b.angle - a.angle).abs() * a.radius };
+        let turning = |axis: DVec2| relative + swerve - axis.dot(velocity) - b.angle * axis.perp().dot(to_b);
+        let mut along = |axis: DVec2, turns: bool| {
             let apart = axis.dot(to_b) - placed_a.extent(axis) - placed_b.extent(-axis);
             if separation < apart {
                 (separation, nearest) = (apart, axis);
             }
-            let closing = spin - axis.dot(velocity);
+            let fixed = spin - axis.dot(velocity);
+            let closing = if turns { fixed.min(turning(axis)) } else { fixed };
             clear |= apart > reach.touching && apart - reach.clear >= closing * (1.0 - t);
             let spare = apart - reach.target;
             if spare > 0.0 {
                 wait = wait.max(if closing > 0.0 { spare / closing } else { f64::INFINITY });
             }
         };
-        placed_a.normals().for_each(&mut along);
-        placed_b.normals().for_each(|axis| along(-axis));
+        placed_a.normals().for_each(|axis| along(axis, false));
+        placed_b.normals().for_each(|axis| along(-axis, b.angle != 0.0));
         if a.count == 0 {
-            along(placed_a.towards(&placed_b));
+            along(placed_a.towards(&placed_b), false);
         } else if b.count == 0 {
-            along(-placed_b.towards(&placed_a));
+            along(-placed_b.towards(&placed_a), false);
         }
         last = nearest;
         if t == 0.0 && separation <= reach.touching {

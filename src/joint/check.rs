@@ -3,7 +3,7 @@
 use crate::body::BodyError;
 use crate::lanes::Real;
 
-use super::spec::{Distance, JointKind, JointSpring, Revolute};
+use super::spec::{Distance, JointKind, JointSpring, Motor, Revolute};
 
 /// Why a joint was refused: which one (in order of insertion), which field, which value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,6 +80,18 @@ pub enum JointError {
         /// The upper bound given.
         above: f64,
     },
+    /// Only a hinge has a motor.
+    #[error("joint {joint}: it is no hinge and has no motor")]
+    NoHinge {
+        /// Its place.
+        joint: usize,
+    },
+    /// No joint is in this place.
+    #[error("there is no joint {joint}")]
+    NoJoint {
+        /// The place.
+        joint: usize,
+    },
     /// No joint has this id.
     #[error("no joint has the id of place {place}, generation {generation}")]
     Stale {
@@ -138,9 +150,7 @@ impl Checker {
     fn revolute<R: Real>(&self, revolute: &Revolute) -> Result<(), JointError> {
         self.point::<R>("anchor", revolute.anchor)?;
         if let Some(motor) = revolute.motor {
-            self.finite::<R>("motor speed", motor.speed)?;
-            self.finite::<R>("motor max_torque", motor.max_torque)?;
-            self.within("motor max_torque", "at least 0", motor.max_torque, motor.max_torque >= 0.0)?;
+            self.motor::<R>(motor)?;
         }
         if let Some(limits) = revolute.limits {
             self.finite::<R>("limits lower", limits.lower)?;
@@ -148,6 +158,12 @@ impl Checker {
             self.ordered("limits lower", "limits upper", limits.lower, limits.upper)?;
         }
         Ok(())
+    }
+
+    pub(super) fn motor<R: Real>(&self, motor: Motor) -> Result<(), JointError> {
+        self.finite::<R>("motor speed", motor.speed)?;
+        self.finite::<R>("motor max_torque", motor.max_torque)?;
+        self.within("motor max_torque", "at least 0", motor.max_torque, motor.max_torque >= 0.0)
     }
 
     /// A rod's length, given or found.

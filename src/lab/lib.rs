@@ -6,6 +6,7 @@
 //! | [`report`] | experiments, plots, the page |
 //! | [`accuracy`] | run time against error, case by case; settings for an error |
 //! | [`stress`] | what holds, and up to where |
+//! | [`wild`] | scenes from problem reports, with the right numbers |
 //! | [`gate`] | instruction counts against blessed ones |
 //! | [`reference`](mod@reference), [`cases`] | what references are made of, and scenes with one |
 //! | [`thesis`] | the baseline engine, faithful and tidy |
@@ -43,3 +44,4 @@ pub mod report;
 pub mod stamp;
 pub mod stress;
 pub mod thesis;
+pub mod wild;

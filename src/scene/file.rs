@@ -39,11 +39,39 @@
 //! ## kind = { revolute = { anchor = [0, 1], motor = { speed = 2, max_torque = 5 }, limits = { lower = -1, upper = 1 } } }
 //! ## kind = { weld = { anchor = [0, 1] } }
 //! ## collide = true                         # else the two pass through each other
+//!
+//! [[event]]                                # at a step, or at a time in seconds; one action each
+//! time = 2.0
+//! insert = { shape = { circle = 0.3 }, position = [0, 5] }   # the next number: 3
+//!
+//! [[event]]
+//! step = 240
+//! velocity = { body = 3, velocity = [0, -8] }
 //! "#;
 //! let (scene, settings) = lamina2d::scene::file::parse("slope.toml", text)?;
-//! assert_eq!((scene.bodies.len(), scene.joints.len()), (3, 1));
+//! assert_eq!((scene.bodies.len(), scene.joints.len(), scene.events.len()), (3, 1, 2));
 //! # Ok::<(), lamina2d::scene::SceneError>(())
 //! ```
+//!
+//! # Events
+//! What is done before the first step that begins after `step` steps, or at `time` or later; those due at once are done in
+//! the order of the file. Bodies go by their numbers, from 0; those that come count on. All are tried before the first step.
+//!
+//! | action | fields |
+//! |---|---|
+//! | `insert` | those of `[[body]]` |
+//! | `remove` | `body` |
+//! | `teleport` | `body`, `position` of its centroid, `angle`; what is left out stays |
+//! | `velocity` (`set_velocity`) | `body`, `velocity`, `angular_velocity`; what is left out stays |
+//! | `impulse` | `body`, `linear`, `angular` |
+//! | `force` (`set_force`) | `body`, `force`, `torque`: constant from then on |
+//! | `motor` (`set_motor`) | `joint` by its number, `speed`, `max_torque`; 0 takes the motor off |
+//! | `kind` (`change`) | `body`, `kind`, `mass` |
+//! | `field` (`fields`) | those of `[forces]`, in place of all there were |
+//! | `pull`, `let_go = true` | `body`, `point_body`, `target` |
+//! | `choose` | `integrator`, `solver`, `substeps` |
+
+mod events;
 
 use serde::Deserialize;
 
@@ -66,6 +94,8 @@ struct File {
     body: Vec<BodySpec>,
     #[serde(default)]
     joint: Vec<JointSpec>,
+    #[serde(default)]
+    event: Vec<toml::Table>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -95,7 +125,7 @@ struct FileSettings {
 ///
 /// # Errors
 /// A file that cannot be read, is not TOML, has unknown keys or values of the wrong type, a bad field or
-/// setting; bodies and joints are checked when a world takes them in.
+/// setting, an event that cannot be read; bodies, joints and what events do are checked when a world takes them in.
 pub fn read(path: &str) -> Result<(Scene, Settings), SceneError> {
     let text = std::fs::read_to_string(path)
         .map_err(|e| SceneError::Unreadable { path: path.to_owned(), why: e.to_string() })?;
@@ -138,12 +168,15 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
     if steps == 0 {
         return Err(setting("steps must be at least 1, got 0".to_owned()));
     }
+    let read = |(event, table)| events::read(table).map_err(|why| SceneError::Event { event, why });
+    let events = file.event.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
     let scene = Scene {
         name: path.to_owned(),
         about: file.about,
         bodies: file.body,
         joints: file.joint,
         forces: file.forces,
+        events,
         dt_secs: settings.dt_secs,
         steps,
         seed: 0,

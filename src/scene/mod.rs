@@ -19,6 +19,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use crate::body::{BodyKind, BodySpec, ShapeSpec};
+use crate::event::{SceneEvent, When};
 use crate::force::Forces;
 use crate::joint::JointSpec;
 pub use named::{SCENES, SceneInfo, by_name, by_name_in};
@@ -39,6 +40,9 @@ pub struct Scene {
     pub joints: Vec<JointSpec>,
     /// The fields.
     pub forces: Forces,
+    /// What it does to itself on its way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<SceneEvent>,
     /// The step it is meant to run with, seconds.
     pub dt_secs: f64,
     /// The steps that show what it is about.
@@ -48,6 +52,14 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The same scene with its events at times, so that steps of another length do them as late.
+    #[must_use]
+    pub fn timed(&self) -> Self {
+        let timed =
+            |event: &SceneEvent| SceneEvent { at: When::Time(event.secs(self.dt_secs)), ..event.clone() };
+        Self { events: self.events.iter().map(timed).collect(), ..self.clone() }
+    }
+
     /// Bodies that are not static.
     pub fn movable(&self) -> usize {
         self.bodies.iter().filter(|b| b.kind != BodyKind::Static).count()
@@ -144,6 +156,14 @@ pub enum SceneError {
     /// A joint is bad.
     #[error(transparent)]
     Joint(#[from] crate::joint::JointError),
+    /// What the scene does to itself cannot be done.
+    #[error("event {event}: {why}")]
+    Event {
+        /// Its number, from 0.
+        event: usize,
+        /// What is wrong.
+        why: String,
+    },
     /// A setting in a file is bad.
     #[error("scene file {path}: {why}")]
     Setting {

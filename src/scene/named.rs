@@ -401,6 +401,7 @@ pub fn scene(about: &str, bodies: Vec<BodySpec>, forces: Forces, steps: u64) -> 
         bodies,
         joints: Vec::new(),
         forces,
+        events: Vec::new(),
         dt_secs: 1.0 / 60.0,
         steps,
         seed: 0,

@@ -1,7 +1,7 @@
 //! A scene seen otherwise: enlarged, heavier, mirrored, turned, shifted, moving. The motion is then known from that of
 //! the scene itself, without any reference: what an engine makes of it shows which absolute numbers it hides.
 //!
-//! Scenes of bodies and gravity alone: joints and other fields are left as they are.
+//! Scenes of bodies and gravity alone: joints, other fields and events are left as they are.
 
 use super::{BodySpec, Scene, ShapeSpec};
 

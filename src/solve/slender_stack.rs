@@ -1,4 +1,4 @@
-//! Slender stacks: what stands on one contact alone, and how many substeps it takes to stand.
+//! Slender stacks: what stands on one contact alone, and how many substeps it takes to stand, and to stand where it is.
 //!
 //! Soft contacts yield, so a stack leans and its weight bends it further. A contact of two points w apart, each with
 //! stiffness k, answers a turn θ with the moment c·θ, c = k₀k₁/(k₀ + k₁)·w². What it alone carries weighs N along the
@@ -12,6 +12,8 @@
 //! Which contacts carry something alone is found by peeling: a body with one contact is given to the body below it, with
 //! all it carries, until what is left holds on to itself in rings. Bodies with joints are not peeled. What has its centre
 //! of mass not above its contact's points adds nothing, as on a single point: no stiffness keeps it from tipping.
+//! The same weight N along the normal presses a contact of effective mass m in by N/(m·ω²): where that is more than a
+//! few thousandths of the smaller body's size, the stack asks for as many substeps as make it one.
 //! Weights are those of all fields and forces that act on bodies at rest where they are, not the impulses that contacts hold:
 //! they are right from the first step on,
 //! and an impact asks for nothing.
@@ -24,6 +26,11 @@ use crate::each::Each as _;
 use crate::force::{Field, acceleration_of};
 use crate::lanes::{Lanes, Real};
 
+/// What stands on one contact alone and would sink in by more than [`BORNE`] times this share of the smaller body's radius
+/// gets the substeps with which it does not sink further than this: a thousandth of a box's side.
+const MOST_SAG: f64 = 1.3e-3;
+/// Under standard gravity 13 boxes of 1 m on each other, or one of 4 cm, are borne by 4 substeps; ten sink by 1.5e-3.
+const BORNE: f64 = 2.0;
 /// A body with joints has at least so many contacts: more than can be peeled off it.
 const JOINED: u32 = 1 << 30;
 
@@ -33,6 +40,8 @@ struct Edge {
     slots: [u32; 2],
     /// m₀m₁/(m₀ + m₁)·w² with the points' effective masses, kg·m²; 0 unless there are two points.
     turn: f64,
+    /// Effective mass of its points together, kg.
+    mass: f64,
     /// From A's centroid to the points, along the normal, metres.
     ahead: f64,
     /// From A's centroid to either point, along the tangent, metres.
@@ -74,19 +83,20 @@ impl SlenderStacks {
         Touching { edges: &mut self.edges, touch: L::lit(touch) }
     }
 
-    /// Substeps that the stack needs that stands on each body's way down, per slot. `joined`: slots of joints.
+    /// Substeps that the stack needs that stands on each body's way down, per slot: so as not to lean, and not to sink in;
+    /// the second below 0 for what holds on to itself in rings. `joined`: slots of joints.
     pub(super) fn look<R: Real>(
         &mut self,
         goal: &Goal,
         (bodies, fields): (&Bodies<R>, &[Field<R>]),
         joined: impl Iterator<Item = [u32; 2]>,
-        needs: &mut Vec<f64>,
+        needs: &mut Vec<[f64; 2]>,
     ) {
         needs.clear();
-        needs.resize(bodies.len(), 0.0);
-        if !self.edges.iter().any(|edge| edge.turn > 0.0) {
+        if self.edges.is_empty() {
             return;
         }
+        needs.resize(bodies.len(), [0.0; 2]);
         self.weigh(bodies, fields, joined);
         let movable = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
         let one_left = |slot: &usize| self.parts[*slot].contacts == 1 && movable(*slot);
@@ -103,7 +113,14 @@ impl SlenderStacks {
             let edge = self.edges[part.which as usize];
             let below = edge.slots[usize::from(edge.slots[0] == slot)] as usize;
             let sum = part.sum + goal.leaning(edge.moment(slot, &part, bodies), edge.turn);
-            needs[slot as usize] = sum.sqrt();
+            let sizes = edge.slots.each(|slot| bodies.radius[slot as usize].to_f64());
+            // What nothing moves may be as small as a pin, or the world itself.
+            let size =
+                if movable(below) { sizes[0].min(sizes[1]) } else { bodies.radius[slot as usize].to_f64() };
+            let sinking = goal.sinking(edge.pressed(slot, &part), edge.mass) / (MOST_SAG * size);
+            let asks = goal.holds_up && sinking > BORNE * f64::from(goal.base).powi(2);
+            let sinking = if asks && part.rests(bodies, slot as usize) { sinking } else { 0.0 };
+            needs[slot as usize] = [sum, sinking].each(f64::sqrt);
             self.parts[slot as usize].contacts = 0;
             if !movable(below) {
                 continue;
@@ -118,6 +135,9 @@ impl SlenderStacks {
             if onto.contacts == 1 {
                 self.loose.push(below as u32);
             }
+        }
+        for (needs, _) in needs.iter_mut().zip(&self.parts).filter(|(_, part)| part.contacts > 0) {
+            needs[1] = -1.0;
         }
     }
 
@@ -155,7 +175,23 @@ impl SlenderStacks {
     }
 }
 
+impl Part {
+    /// Is the body that carries this slower than what it would fall by in a tenth of its size? What is stirred or falls
+    /// asks for nothing.
+    fn rests<R: Real>(&self, bodies: &Bodies<R>, slot: usize) -> bool {
+        let speed = bodies.vx[slot].to_f64().hypot(bodies.vy[slot].to_f64());
+        let pull = self.load * bodies.inv_mass[slot].to_f64();
+        speed * speed < 0.02 * pull * bodies.radius[slot].to_f64()
+    }
+}
+
 impl Edge {
+    /// What `slot` carries presses its points together by so much, N.
+    fn pressed(&self, slot: u32, part: &Part) -> f64 {
+        let along = part.weight[0] * self.normal[0] + part.weight[1] * self.normal[1];
+        (if self.slots[0] == slot { along } else { -along }).max(0.0)
+    }
+
     /// N·h of what `slot` carries, N·m per radian; 0 where that does not stand on the points.
     fn moment<R: Real>(&self, slot: u32, part: &Part, bodies: &Bodies<R>) -> f64 {
         if part.load <= 0.0 {
@@ -202,7 +238,8 @@ impl<L: Lanes> Visit<L> for Touching<'_, L> {
                 let turn = m * n / (m + n) * (aside[0] - aside[1]).powi(2);
                 let normal = [nx[lane], ny[lane]].each(L::Elem::to_f64);
                 let slots = [ends.a[lane], ends.b[lane]];
-                self.edges.push(Edge { slots, turn, ahead: ahead[lane].to_f64(), aside, normal });
+                let mass = if POINTS == 1 { m } else { m + n };
+                self.edges.push(Edge { slots, turn, mass, ahead: ahead[lane].to_f64(), aside, normal });
             }
         }
     }

@@ -37,6 +37,8 @@ pub struct Solving<L: Lanes> {
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
+    /// Nothing touched in the last step, and lists of contacts are those of the one before.
+    flew: bool,
 }
 
 /// Steps for which a warm start is carried from one to the next.
@@ -56,6 +58,7 @@ impl<L: Lanes> Default for Solving<L> {
             in_rows: false,
             deep: deep::Apart::default(),
             until_summed: 0,
+            flew: false,
         }
     }
 }
@@ -70,13 +73,29 @@ impl<L: Lanes> Solving<L> {
     ) -> bool {
         let looked = self.substep_groups.looks(goal);
         if looked {
-            if goal.max_sag.is_some() {
-                self.stream.visit(&mut self.substep_groups.reading());
+            // What was in the lists before a flight no longer touches.
+            let mut loads = goal.max_sag.map(|_| self.substep_groups.reading());
+            if let Some(loads) = loads.as_mut().filter(|_| !self.flew) {
+                self.stream.visit(loads);
             }
-            self.stream.visit(&mut self.substep_groups.touching(goal));
+            let mut touching = self.substep_groups.touching(goal);
+            if !self.flew {
+                self.stream.visit(&mut touching);
+            }
             self.substep_groups.weigh(goal, bodies, ends_of(joints));
         }
         looked
+    }
+
+    /// Has some island others than `substeps`?
+    pub fn is_paced(&self, substeps: u32) -> bool {
+        self.substep_groups.span().is_some_and(|span| span != [substeps; 2])
+    }
+
+    /// A step goes by in which nothing touches; `looked`: [`Solving::look`] did.
+    pub fn fly(&mut self, looked: bool) {
+        self.flew = true;
+        self.substep_groups.count_step(looked);
     }
 
     /// Gives islands their substeps; says whether any has others than before. `looked`: [`Solving::look`] did.
@@ -88,6 +107,7 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         motion: &mut Motion<L::Elem>,
     ) -> bool {
+        self.flew = false;
         let wanted = self.substep_groups.wants(&goal, looked);
         let changed = wanted
             && self.substep_groups.decide(&goal, bodies, manifolds, ends_of(joints), &motion.runs, looked);

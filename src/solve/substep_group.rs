@@ -1,7 +1,7 @@
 //! Substeps per island: hard piles get more, quiet ones fewer.
 //!
 //! Unless substeps are fixed, an island in which a slender stack would buckle gets those that [`slender_stack`](super::slender_stack)
-//! asks for: always on, as it costs a look every [`TOWER_STEPS`] steps until there is one. A bound on the sag is asked
+//! asks for, or what presses hard would sink in: always on, as it costs a look every [`TOWER_STEPS`] steps until there is one. A bound on the sag is asked
 //! for by the settings.
 //!
 //! A contact that carries N sags by s ≈ N/(m_eff·ω²), ω = 2π·hz with hz·h the stiffness: of n substeps in a
@@ -58,8 +58,8 @@ pub struct SubstepGroups<R: Real> {
     index: Column<R>,
     /// N/m_eff·dt per slot, of this look and the last, m/s.
     load: [Vec<f64>; 2],
-    /// Substeps it takes per slot to keep stacks from buckling.
-    slender_stack_needs: Vec<f64>,
+    /// Substeps it takes per slot to keep stacks from buckling, and from sinking in.
+    slender_stack_needs: Vec<[f64; 2]>,
     slender_stacks: SlenderStacks,
     /// Bodies have come since the last look: what they stand on has hardly sagged yet.
     fresh: bool,
@@ -146,7 +146,8 @@ impl<R: Real> SubstepGroups<R> {
 
     /// Are islands to be told apart in this step? `looked`: it began with a look.
     pub fn wants(&self, goal: &Goal, looked: bool) -> bool {
-        let asked = || self.slender_stack_needs.iter().any(|&needs| needs > f64::from(goal.base));
+        let asked =
+            || self.slender_stack_needs.as_flattened().iter().any(|&needs| needs > f64::from(goal.base));
         self.is_paced() || goal.max_sag.is_some() || (looked && asked())
     }
 
@@ -193,9 +194,8 @@ impl<R: Real> SubstepGroups<R> {
         let resized = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        for per_slot in self.load.iter_mut().chain([&mut self.slender_stack_needs]) {
-            per_slot.resize(bodies.len(), 0.0);
-        }
+        self.load.iter_mut().for_each(|load| load.resize(bodies.len(), 0.0));
+        self.slender_stack_needs.resize(bodies.len(), [0.0; 2]);
         self.join(bodies, manifolds, joints, runs);
         let joined = self.common_of_joined(goal, looked);
         self.joined = Some(joined);
@@ -262,7 +262,10 @@ impl<R: Real> SubstepGroups<R> {
             let island = &mut self.islands[at];
             let [now, last] = self.load.each_ref().each(|load| load[slot]);
             island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
-            island.slender_stack = island.slender_stack.max(self.slender_stack_needs[slot]);
+            let [leaning, sinking] = self.slender_stack_needs[slot];
+            island.slender_stack = island.slender_stack.max(leaning);
+            island.sinking = island.sinking.max(sinking);
+            island.ringed |= sinking < 0.0;
             island.substeps = island.substeps.max(self.of_slot[slot]);
             island.touches |= own.touches;
             island.joined |= own.joined;

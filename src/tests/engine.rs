@@ -19,6 +19,7 @@ mod engine {
     mod chains;
     mod contacts;
     mod continuous;
+    mod events;
     mod fields;
     mod fuzz;
     mod homes;

@@ -31,4 +31,5 @@ mod program {
     mod stress;
     mod thesis;
     mod tune;
+    mod wild;
 }

@@ -4,7 +4,7 @@ use super::{Log, World, WorldError};
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::contact::{Contact, Manifolds};
 use crate::force::{Forces, MOST_ATTRACTED};
-use crate::joint::{JointError, JointId, JointKind, Joints};
+use crate::joint::{JointError, JointId, JointKind, Joints, Motor};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, StageTimes, state_hash};
 use crate::scene::{BodyKind, BodySpec, SceneError};
@@ -69,8 +69,9 @@ impl<L: Lanes> World<L> {
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
         let (revision, Log { steps, time_secs, stopwatch, .. }) = (self.laws.revision, self.log.clone());
+        let acts = std::mem::take(&mut self.laws.acts);
         *self = Self::from_parts(bodies, joints, self.laws.forces, settings)?;
-        self.laws.revision = revision;
+        (self.laws.revision, self.laws.acts) = (revision, acts);
         self.log = Log { steps, time_secs, stopwatch, ..Log::default() };
         Ok(())
     }
@@ -105,6 +106,51 @@ impl<L: Lanes> World<L> {
         self.log.watchdog.forget();
         self.bodies.apply_impulse(id, linear, angular)?;
         self.islands.wake(id.slot());
+        Ok(())
+    }
+
+    /// Puts a body elsewhere and wakes all; see [`Bodies::set_pose`].
+    ///
+    /// # Errors
+    /// Those of [`Bodies::set_pose`].
+    pub fn set_pose(
+        &mut self,
+        id: BodyId,
+        position: Option<[f64; 2]>,
+        angle: Option<f64>,
+    ) -> Result<(), BodyError> {
+        self.bodies.set_pose(id, position, angle)?;
+        self.islands.wake_all();
+        Ok(())
+    }
+
+    /// Gives a body another velocity and wakes its island, or all where it is kinematic; see [`Bodies::set_velocity`].
+    ///
+    /// # Errors
+    /// Those of [`Bodies::set_velocity`].
+    pub fn set_velocity(
+        &mut self,
+        id: BodyId,
+        velocity: Option<[f64; 2]>,
+        angular_velocity: Option<f64>,
+    ) -> Result<(), BodyError> {
+        self.bodies.set_velocity(id, velocity, angular_velocity)?;
+        match self.bodies.kind(id.slot()) {
+            BodyKind::Dynamic => self.islands.wake(id.slot()),
+            _ => self.islands.wake_all(),
+        }
+        Ok(())
+    }
+
+    /// Lets the motor of the hinge in a place run otherwise and wakes its bodies; see [`Joints::set_motor`].
+    ///
+    /// # Errors
+    /// Those of [`Joints::set_motor`].
+    pub fn set_motor(&mut self, joint: u32, motor: Motor) -> Result<(), JointError> {
+        self.joints.set_motor(joint, motor)?;
+        for id in self.joints.at(joint).map(|joint| joint.bodies).into_iter().flatten() {
+            self.islands.wake(id.slot());
+        }
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use crate::scene::SceneError;
 use crate::settings::{Precision, SettingsError};
 
 /// A step that could not be taken to its end.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// A body's state became NaN or infinite; the world holds that state.
     #[error("step {step}: body in slot {slot} is no longer finite: {column} = {value} after {stage}")]
@@ -56,6 +56,16 @@ pub enum StepError {
         /// What moves that body faster than it was predicted to be: the solver, else the integrator.
         stage: Stage,
     },
+    /// Something that the scene does to itself could not be done; see [`crate::event::SceneEvent`].
+    #[error("step {step}: event {event}: {why}")]
+    Event {
+        /// The step's number, from 1.
+        step: u64,
+        /// The event's number in the scene, from 0.
+        event: usize,
+        /// What is wrong with it.
+        why: String,
+    },
     /// Steps have a positive, finite length.
     #[error("dt must be positive and finite, got {0:?}")]
     Dt(f64),
@@ -101,7 +111,7 @@ impl StepError {
     pub fn slot(&self) -> Option<usize> {
         match *self {
             Self::NonFinite { slot, .. } | Self::Runaway { slot, .. } | Self::Gain { slot, .. } => Some(slot),
-            Self::Dt(_) | Self::ShortDt { .. } => None,
+            Self::Event { .. } | Self::Dt(_) | Self::ShortDt { .. } => None,
         }
     }
 }

@@ -48,6 +48,8 @@ pub struct Blueprint {
     pub dt_secs: f64,
     /// Fields beside gravity, by name: no peer has any.
     pub fields: Vec<&'static str>,
+    /// How many events it has.
+    pub events: usize,
     driver: Driver,
 }
 
@@ -76,15 +78,17 @@ impl Blueprint {
             gravity: scene.forces.gravity.unwrap_or([0.0; 2]),
             dt_secs: scene.dt_secs,
             fields: scene.forces.beyond_gravity().collect(),
+            events: scene.events.len(),
         })
     }
 
-    /// Refuses the scene where it has a field beside gravity.
+    /// Refuses the scene where it has a field beside gravity, or events.
     ///
     /// # Errors
     /// The field.
     pub fn without_fields(&self, engine: Name) -> Result<(), Gap> {
         match self.fields.first() {
+            None if self.events > 0 => Err(self.gap(engine, "nothing is done to it on its way".to_owned())),
             None => Ok(()),
             Some(field) => Err(self.gap(engine, format!("it has no field {field}"))),
         }

@@ -26,8 +26,16 @@ const SEED: u64 = 1;
 
 /// lamina2d, Box2D and rapier on the same scenes, in turns, in one process.
 #[derive(Debug, Parser)]
-#[command(name = "lamina-peers", version, about, max_term_width = 100)]
+#[command(
+    name = "lamina-peers",
+    version,
+    about,
+    max_term_width = 100,
+    args_conflicts_with_subcommands = true
+)]
 struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
     /// Scenes by name, name/parameter, or .toml files [default: the whole plan, about a quarter of an hour].
     scenes: Vec<String>,
     /// Print one JSON document.
@@ -42,6 +50,22 @@ struct Args {
     /// List the plan and run nothing.
     #[arg(long)]
     list: bool,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    /// Run scenes made from public problem reports with every engine and hold each to its right numbers.
+    Wild {
+        /// Only these: a kind, or how a case's name begins.
+        #[arg(value_name = "CASE")]
+        cases: Vec<String>,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+        /// Write the JSON document to this file.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Input that was refused: exit code 2.
@@ -74,13 +98,42 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| kind(cause) == Some(std::io::ErrorKind::BrokenPipe))
 }
 
+fn bar(length: u64) -> anyhow::Result<ProgressBar> {
+    let bar = ProgressBar::new(length);
+    bar.set_style(ProgressStyle::with_template("{msg:20} {wide_bar} {pos}/{len} {eta}")?);
+    Ok(bar)
+}
+
+fn wild(cases: &[String], json: bool, out: Option<&Path>) -> anyhow::Result<()> {
+    let cases = lamina::wild::chosen(cases).map_err(refuse)?;
+    let bar = bar(cases.len() as u64)?;
+    let wild = lamina_peers::wild::run(&cases, |name| {
+        bar.set_message(name.to_owned());
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let document = json!({"machine": Machine::read(), "engines": about::engines(), "counts": wild.counts, "rows": wild.rows, "gaps": wild.gaps});
+    let text = serde_json::to_string_pretty(&document)?;
+    if let Some(path) = out {
+        write_whole(path, &text)?;
+    }
+    if json {
+        return print(&text);
+    }
+    wild.counts.iter().try_for_each(|count| {
+        print(&format!("{}: {} of {} right", count.engine, count.tally.right, count.tally.cases))
+    })
+}
+
 fn run(args: &Args) -> anyhow::Result<()> {
+    if let Some(Command::Wild { cases, json, out }) = &args.command {
+        return wild(cases, *json, out.as_deref());
+    }
     let groups = groups(args)?;
     if args.list {
         return list(&groups);
     }
-    let bar = ProgressBar::new(groups.iter().map(|(_, group)| ticks(group)).sum());
-    bar.set_style(ProgressStyle::with_template("{msg:20} {wide_bar} {pos}/{len} {eta}")?);
+    let bar = bar(groups.iter().map(|(_, group)| ticks(group)).sum())?;
     let mut results = Results::default();
     for (scene, group) in &groups {
         bar.set_message(scene.name.clone());

@@ -6,6 +6,7 @@
 //! | [`engine`] | what an engine is; which one to build, with what |
 //! | [`ours`], [`box2d`], [`rapier`] | the engines |
 //! | [`plan`], [`run`] | what is run; windows of steps in which the engines take turns |
+//! | [`wild`] | scenes from problem reports, every engine held to the same numbers |
 //! | [`row`], [`about`] | what is printed: of each run, of each engine's build |
 //!
 //! Alike for all: shapes, poses, masses, friction and restitution (the smaller of a pair's two), categories,
@@ -22,3 +23,4 @@ pub mod plan;
 pub mod rapier;
 pub mod row;
 pub mod run;
+pub mod wild;

@@ -14,6 +14,7 @@ mod run;
 mod scenes;
 mod stress;
 mod tune;
+mod wild;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -52,6 +53,8 @@ enum Command {
     Tune(tune::Args),
     /// Run the cases of stability with every solver, and look for where they break.
     Stress(stress::Args),
+    /// Run scenes made from public problem reports and hold each to its right numbers.
+    Wild(wild::Args),
     /// Count instructions of kernels and scenes under valgrind and hold them against those blessed.
     Gate(gate::Args),
     /// Run all experiments into a folder with a page, tables and plots.
@@ -86,6 +89,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Accuracy(args) => accuracy::main(&args),
         Command::Stress(args) => stress::main(&args),
         Command::Tune(args) => tune::main(&args),
+        Command::Wild(args) => wild::main(&args),
         Command::Gate(args) => gate::main(&args),
         Command::Report(args) => report::main(&args),
     };

@@ -82,12 +82,18 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What the first row is.
+fn head_of(answer: &Answer) -> &'static str {
+    if answer.met { "best" } else { "nearest" }
+}
+
 fn print(answer: &Answer) -> anyhow::Result<()> {
     let Answer { scene, metric, unit, max_error, seconds, .. } = answer;
     let head = if answer.met { "Cheapest" } else { "None meets it; nearest" };
     output::print_text(&format!("{head} for {scene}: {metric} <= {max_error} {unit} over {seconds} s\n"))?;
-    let row = |run: &Tried| {
+    let row = |name: &'static str, run: &Tried| {
         vec![
+            name.to_owned(),
             run.integrator.to_string(),
             run.solver.map_or_else(|| "–".to_owned(), |solver| solver.to_string()),
             format!("1/{:.0}", 1.0 / run.h),
@@ -96,10 +102,12 @@ fn print(answer: &Answer) -> anyhow::Result<()> {
             run.precision.to_string(),
             run.error.map_or_else(|| "not finite".to_owned(), |error| format!("{error:.2e}")),
             format!("{:.4}", run.ns_per_simulated_second * 1e-6),
+            run.differs.clone().unwrap_or_else(|| "yes".to_owned()),
         ]
     };
     let error = format!("error, {unit}");
     let header = [
+        "",
         "integrator",
         "solver",
         "h, s",
@@ -108,11 +116,15 @@ fn print(answer: &Answer) -> anyhow::Result<()> {
         "precision",
         &error,
         "ms per simulated second",
+        "comes out right",
     ];
-    output::print_text(&output::table(&header, answer.best.iter().map(row)))?;
-    let Answer { tried, too_slow, not_tried, .. } = answer;
+    let best =
+        answer.best.iter().enumerate().map(|(k, run)| row(if k == 0 { head_of(answer) } else { "" }, run));
+    let rows = best.chain([row("default", &answer.default)]);
+    output::print_text(&output::table(&header, rows))?;
+    let Answer { tried, disagreed, too_slow, not_tried, .. } = answer;
     output::print_text(&format!(
-        "\n{tried} settings run; {too_slow} left out as slower, {not_tried} for want of time (--budget)"
+        "\n{tried} settings run; {disagreed} kept the error but came out otherwise than a converged run; {too_slow} left out as slower, {not_tried} for want of time (--budget)"
     ))?;
     match answer.best.first() {
         Some(run) => output::print_text(&run.command),

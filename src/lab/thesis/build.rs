@@ -41,6 +41,12 @@ pub enum ThesisError {
         /// How many there are.
         joints: usize,
     },
+    /// Nothing is done to it on its way.
+    #[error("the thesis baseline knows no events, the scene has {events}: remove them")]
+    Events {
+        /// How many there are.
+        events: usize,
+    },
     /// A shape is bad.
     #[error("body {body}: shape: {why}")]
     Shape {
@@ -112,6 +118,9 @@ pub(super) fn gravity_px(forces: &Forces) -> Result<Vec2, ThesisError> {
 pub(super) fn blueprints(scene: &Scene) -> Result<Vec<Blueprint>, ThesisError> {
     if !scene.joints.is_empty() {
         return Err(ThesisError::Joints { joints: scene.joints.len() });
+    }
+    if !scene.events.is_empty() {
+        return Err(ThesisError::Events { events: scene.events.len() });
     }
     scene.bodies.iter().enumerate().map(|(body, spec)| blueprint(body, spec)).collect()
 }

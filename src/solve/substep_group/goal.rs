@@ -7,7 +7,7 @@ use crate::settings::{Settings, Solver};
 use crate::solve::SolverContext;
 
 /// Numbers of substeps an island may have.
-pub(crate) const RUNGS: [u32; 13] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+pub(crate) const RUNGS: [u32; 15] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256];
 
 /// A stack that has sagged and needs over so many times the substeps it has had is let fall: its contacts, stiffer rung by
 /// rung, would throw it up. Columns with 8 whose prop went after half a second leapt by 0.2 m with a need of 6 times as
@@ -33,6 +33,8 @@ pub struct Goal {
     pub share: f64,
     /// Gaps up to this touch, metres.
     pub touch: f64,
+    /// What sinks in by much of its size gets more: neither a bound nor a stiffness was asked for.
+    pub holds_up: bool,
 }
 
 impl Goal {
@@ -45,13 +47,20 @@ impl Goal {
             context.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
         let touch = context.needs.touch();
         let paced = max_sag.is_some() || looks_for_towers;
-        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, touch })
+        let holds_up = max_sag.is_none() && settings.stiffness.is_none();
+        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, touch, holds_up })
     }
 
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.
     fn needed(&self, load: f64) -> f64 {
         let omega_h = 2.0 * std::f64::consts::PI * self.stiffness;
         self.max_sag.map_or(0.0, |max_sag| (load * self.dt_secs / (omega_h * omega_h * max_sag)).sqrt())
+    }
+
+    /// By how much a contact of an effective mass, kg, gives way under `force`, N, with one substep, metres.
+    pub(in crate::solve) fn sinking(&self, force: f64, mass: f64) -> f64 {
+        let per_step = 2.0 * std::f64::consts::PI * self.stiffness / self.dt_secs;
+        if mass > 0.0 { force * self.share / (mass * per_step * per_step) } else { 0.0 }
     }
 
     /// How much of what keeps a contact from leaning `moment`, N·m per radian, takes up with one substep; `turn`:
@@ -79,6 +88,10 @@ pub(super) struct Island {
     pub(super) load: [f64; 2],
     /// Substeps its most slender stack takes.
     pub(super) slender_stack: f64,
+    /// Substeps with which what presses hard does not sink in. It gets them rung by rung: it has sunk in by then.
+    pub(super) sinking: f64,
+    /// Some of it holds on to itself in rings: a pile, which is not weighed.
+    pub(super) ringed: bool,
     /// The most a part of it has had.
     pub(super) substeps: u32,
     /// Something touches or is joined.
@@ -91,11 +104,12 @@ pub(super) struct Island {
 pub(super) fn aimed(goal: &Goal, island: &Island, fresh: bool) -> u32 {
     let hopeless = !fresh && island.slender_stack > HOPELESS * f64::from(island.substeps);
     let slender_stack = if hopeless { 0.0 } else { island.slender_stack };
+    let sinking = if hopeless || island.ringed { 0.0 } else { island.sinking };
     if fresh && slender_stack > f64::from(island.substeps) {
         let enough = RUNGS.into_iter().find(|&n| f64::from(n) >= slender_stack);
         return enough.unwrap_or(RUNGS[RUNGS.len() - 1]).max(island.substeps);
     }
-    let [both, either] = island.load.each(|load| goal.needed(load).max(slender_stack));
+    let [both, either] = island.load.each(|load| goal.needed(load).max(slender_stack).max(sinking));
     let (least, spare) = if goal.max_sag.is_some() { (RUNGS[0], SPARE) } else { (goal.base, TOWER_SPARE) };
     let lower = below(island.substeps).max(least);
     if both > f64::from(island.substeps) {

@@ -236,6 +236,7 @@ fn try_world(deeds: &[Deed], settings: Settings, beginning: Beginning) -> Result
         bodies,
         joints,
         forces,
+        events: Vec::new(),
         dt_secs: 1.0 / 60.0,
         steps: 1,
         seed: 0,

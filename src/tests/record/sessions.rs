@@ -1,5 +1,6 @@
 //! Runs that are acted upon: what was done is done again, to the bit, at every width; what cannot be is refused.
 
+use lamina2d::event::{SceneEvent, When};
 use lamina2d::force::Forces;
 use lamina2d::joint::{JointKind, JointSpec};
 use lamina2d::record::{RecordError, Recorder, Recording, Tape, save, verify};
@@ -73,6 +74,33 @@ fn what_was_done_is_done_again_at_every_width() -> Outcome {
             assert_eq!(verify(&mut recording, Some(lanes), |_| told += 1)?, None, "{name} at {lanes} lanes");
             assert_eq!(told, 131);
         }
+    }
+    Ok(())
+}
+
+/// What a scene does to itself is done again with it, beside what is done by hand.
+#[test]
+fn events_of_the_scene_are_done_again_at_every_width() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("events.mcap");
+    let mut scene = scene::by_name("all/40", None, 5)?;
+    scene.events = script()
+        .into_iter()
+        .filter(|event| event.step < 100)
+        .map(|Event { step, action }| SceneEvent { at: When::Step(step + 3), action })
+        .collect();
+    let by_hand: Vec<_> = script().into_iter().filter(|event| event.step == 80).collect();
+    for sleep in [false, true] {
+        let settings = Settings { sleep, ..Settings::default() };
+        save(&path, &scene, settings, &by_hand, 130, 1)?;
+        let mut recording = Recording::open(&path)?;
+        assert_eq!(recording.scene().events, scene.events);
+        for &lanes in Settings::widths(Precision::F32) {
+            assert_eq!(verify(&mut recording, Some(lanes), |_| ())?, None, "{lanes} lanes, sleep {sleep}");
+        }
+        let without = Scene { events: Vec::new(), ..scene.clone() };
+        let plain = live(&without, settings, &by_hand, 130).world().hash();
+        assert_ne!(recording.rows().last().map(|row| row.hash), Some(plain), "they do something");
     }
     Ok(())
 }

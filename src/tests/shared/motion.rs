@@ -16,6 +16,7 @@ pub(crate) fn scene_of(bodies: Vec<BodySpec>, forces: Forces) -> Scene {
         bodies,
         joints: Vec::new(),
         forces,
+        events: Vec::new(),
         dt_secs: DT_SECS,
         steps: 0,
         seed: 0,

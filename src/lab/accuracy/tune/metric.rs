@@ -7,6 +7,7 @@ use lamina2d::scene::Scene;
 use lamina2d::settings::{Integrator, Precision, Settings, Solver};
 use lamina2d::simulation::{Simulation, simulate};
 
+use super::accord::Accord;
 use crate::cases::error_of;
 
 /// What counts as error.
@@ -100,6 +101,8 @@ pub(super) struct Judge {
     /// How far two converged runs are apart, metres.
     unsure: Option<f64>,
     held: bool,
+    /// What a run must agree with beside; none where the metric itself holds it to the right course.
+    accord: Option<Accord>,
 }
 
 impl Judge {
@@ -123,7 +126,9 @@ impl Judge {
         } else {
             (Vec::new(), None)
         };
-        Ok(Self { metric, scene: scene.clone(), horizon_secs, course, unsure, held })
+        let is_course = metric == Metric::Trajectory || (metric == Metric::Case && !held);
+        let accord = if is_course { None } else { Some(Accord::new(scene, horizon_secs, LOOKS, held)?) };
+        Ok(Self { metric, scene: scene.clone(), horizon_secs, course, unsure, held, accord })
     }
 
     pub(super) fn unsure(&self) -> Option<f64> {
@@ -143,6 +148,7 @@ impl Judge {
             sum: 0.0,
             looks: 0,
             next: 1,
+            differs: None,
         }
     }
 }
@@ -158,6 +164,7 @@ pub(super) struct Hearing<'a> {
     looks: u32,
     /// The next look, from 1.
     next: u32,
+    differs: Option<String>,
 }
 
 impl Hearing<'_> {
@@ -171,6 +178,10 @@ impl Hearing<'_> {
         let at = ((share * f64::from(LOOKS) + 1e-9) as u32).clamp(self.next, LOOKS);
         self.next = at + 1;
         let on_time = (share * f64::from(LOOKS) - f64::from(at)).abs() < 1e-6;
+        if on_time && self.differs.is_none() {
+            let accord = judge.accord.as_ref();
+            self.differs = accord.and_then(|accord| accord.differs(world, at as usize - 1));
+        }
         let error = match judge.metric {
             Metric::Case => error_of(world, &judge.scene, share * judge.horizon_secs),
             Metric::Overlap if at * 4 >= LOOKS * 3 => Some(world.penetration().mean),
@@ -189,6 +200,11 @@ impl Hearing<'_> {
             self.sum += error;
             self.looks += 1;
         }
+    }
+
+    /// What the run had first otherwise than a converged one; `None` where it agreed.
+    pub(super) fn differs(&self) -> Option<String> {
+        self.differs.clone()
     }
 
     pub(super) fn error(&self) -> f64 {

@@ -1,9 +1,11 @@
-//! The cheapest settings that keep a scene's error under a bound.
+//! The cheapest settings that keep a scene's error under a bound, and under which it comes out as it does in a converged run
+//! (`accord`).
 //!
 //! Candidates are tried from the least work to the most: rounds per second times what the integrator and the solver take,
 //! roughly. What work costs is learnt from the runs themselves, so that candidates which must be slower than one that
 //! was good enough are not run at all. The best are then timed again, in turns, and told by their medians.
 
+mod accord;
 mod metric;
 
 use std::time::{Duration, Instant};
@@ -65,6 +67,10 @@ pub struct Tried {
     pub precision: Precision,
     /// In the metric's unit; null where the run ended in a state that is not finite.
     pub error: Option<f64>,
+    /// Does the scene come out as in a converged run?
+    pub agrees: bool,
+    /// What is first otherwise, and when.
+    pub differs: Option<String>,
     /// Run time per simulated second, ns: once, or the median of several.
     pub ns_per_simulated_second: f64,
     /// The command line that runs it.
@@ -88,8 +94,12 @@ pub struct Answer {
     pub met: bool,
     /// Those that meet it, the cheapest first; where none does, those that come nearest.
     pub best: Vec<Tried>,
+    /// The default settings on this scene, timed beside the best.
+    pub default: Tried,
     /// Settings that were run.
     pub tried: usize,
+    /// Of those, how many kept the error but came out otherwise than a converged run.
+    pub disagreed: usize,
     /// Settings that were left out since they had to be slower than the best.
     pub too_slow: usize,
     /// Settings that were left out for want of time.
@@ -106,7 +116,31 @@ struct Candidate {
     precision: Precision,
 }
 
+impl Tried {
+    /// Is the error under a bound?
+    fn keeps(&self, max_error: f64) -> bool {
+        self.error.is_some_and(|error| error <= max_error)
+    }
+    /// Is it, and does the scene come out right?
+    fn is_good(&self, max_error: f64) -> bool {
+        self.agrees && self.keeps(max_error)
+    }
+}
+
 impl Candidate {
+    /// The default settings, by the scene's own step.
+    fn default_of(scene: &Scene, held: bool) -> Self {
+        let Settings { integrator, solver, substeps, precision, .. } = Settings::default();
+        Self {
+            integrator,
+            solver: held.then_some(solver),
+            rate: (1.0 / scene.dt_secs).round().max(1.0) as u32,
+            substeps,
+            stiffness: None,
+            precision,
+        }
+    }
+
     fn settings(&self, steps: u32, horizon_secs: f64) -> Settings {
         let default = Settings::default();
         Settings {
@@ -173,6 +207,8 @@ pub fn tune(
     mut tell: impl FnMut(usize, usize),
 ) -> anyhow::Result<Answer> {
     let horizon_secs = question.horizon_secs;
+    // Steps of another length do what is due at the same times.
+    let scene = &scene.timed();
     ensure!(
         horizon_secs > 0.0 && horizon_secs.is_finite(),
         "--seconds must be positive and finite, got {horizon_secs}"
@@ -185,6 +221,7 @@ pub fn tune(
             question.metric.unit()
         );
     }
+    let default = Candidate::default_of(scene, judge.is_held());
     let all = candidates(judge.is_held());
     let (begin, budget) = (Instant::now(), Duration::from_secs_f64(question.budget_secs));
     let (mut tried, mut best_ns) = (Vec::new(), f64::INFINITY);
@@ -197,7 +234,7 @@ pub fn tune(
             not_tried += 1;
         } else {
             let run = run(scene, question, candidate, &judge)?;
-            if run.error.is_some_and(|error| error <= question.max_error) {
+            if run.is_good(question.max_error) {
                 best_ns = best_ns.min(run.ns_per_simulated_second);
             }
             // The least that a unit of work was seen to take: what is left out would have had to do better yet.
@@ -206,10 +243,13 @@ pub fn tune(
         }
     }
     let mut best = select(tried.clone(), question.max_error);
-    let met = best.first().is_some_and(|(_, run)| run.error.is_some_and(|error| error <= question.max_error));
+    let met = best.first().is_some_and(|(_, run)| run.is_good(question.max_error));
+    let mut beside = [(default, run(scene, question, &default, &judge)?)];
     if met {
-        time_again(scene, &mut best, horizon_secs)?;
+        time_again(scene, &mut best, &mut beside, horizon_secs)?;
     }
+    let [(_, default)] = beside;
+    let disagreed = tried.iter().filter(|(_, run)| run.keeps(question.max_error) && !run.agrees).count();
     Ok(Answer {
         scene: scene.name.clone(),
         metric: question.metric.name(),
@@ -218,7 +258,9 @@ pub fn tune(
         seconds: horizon_secs,
         met,
         best: best.into_iter().map(|(_, run)| run).collect(),
+        default,
         tried: tried.len(),
+        disagreed,
         too_slow,
         not_tried,
     })
@@ -227,9 +269,10 @@ pub fn tune(
 /// The fastest that meet the bound, or those that come nearest.
 fn select(mut tried: Vec<(Candidate, Tried)>, max_error: f64) -> Vec<(Candidate, Tried)> {
     let error = |run: &Tried| run.error.unwrap_or(f64::INFINITY);
-    let good: Vec<_> = tried.iter().filter(|(_, run)| error(run) <= max_error).cloned().collect();
+    let good: Vec<_> = tried.iter().filter(|(_, run)| run.is_good(max_error)).cloned().collect();
     if good.is_empty() {
-        tried.sort_by(|a, b| error(&a.1).total_cmp(&error(&b.1)));
+        // Of those that come out right, if there are any.
+        tried.sort_by(|(_, a), (_, b)| b.agrees.cmp(&a.agrees).then(error(a).total_cmp(&error(b))));
     } else {
         tried = good;
         tried.sort_by(|a, b| a.1.ns_per_simulated_second.total_cmp(&b.1.ns_per_simulated_second));
@@ -256,6 +299,7 @@ fn run(scene: &Scene, question: &Question, candidate: &Candidate, judge: &Judge)
         case.look(world.as_ref(), f64::from(step) / f64::from(steps));
     }
     let error = Some(case.error()).filter(|error| !broken && error.is_finite());
+    let differs = if broken { Some("the run broke off".to_owned()) } else { case.differs() };
     Ok(Tried {
         integrator: candidate.integrator,
         solver: candidate.solver,
@@ -264,6 +308,8 @@ fn run(scene: &Scene, question: &Question, candidate: &Candidate, judge: &Judge)
         stiffness: candidate.stiffness,
         precision: candidate.precision,
         error,
+        agrees: differs.is_none(),
+        differs,
         ns_per_simulated_second: taken.as_nanos() as f64 / horizon_secs,
         command: command(question, candidate, &settings, steps),
     })
@@ -278,11 +324,19 @@ fn command(question: &Question, candidate: &Candidate, settings: &Settings, step
     )
 }
 
-/// Times the finalists in turns and sorts them by their medians.
-fn time_again(scene: &Scene, best: &mut [(Candidate, Tried)], horizon_secs: f64) -> anyhow::Result<()> {
-    let mut samples = vec![Vec::new(); best.len()];
+/// Times the finalists, and what stands beside them, in turns and sorts them by their medians.
+fn time_again(
+    scene: &Scene,
+    best: &mut [(Candidate, Tried)],
+    beside: &mut [(Candidate, Tried)],
+    horizon_secs: f64,
+) -> anyhow::Result<()> {
+    let mut samples = vec![Vec::new(); best.len() + beside.len()];
+    // What broke off once is not timed.
+    let whole = |run: &Tried| run.error.is_some();
     for _ in 0..WINDOWS {
-        for ((candidate, _), samples) in best.iter().zip(&mut samples) {
+        let all = best.iter().chain(&*beside).zip(&mut samples);
+        for ((candidate, _), samples) in all.filter(|((_, run), _)| whole(run)) {
             let steps = candidate.steps(horizon_secs);
             let settings = candidate.settings(steps, horizon_secs);
             let mut world: Box<dyn Simulation> = simulate(scene, settings)?;
@@ -293,7 +347,8 @@ fn time_again(scene: &Scene, best: &mut [(Candidate, Tried)], horizon_secs: f64)
             samples.push(begin.elapsed().as_nanos() as f64 / horizon_secs);
         }
     }
-    for ((_, run), samples) in best.iter_mut().zip(&samples) {
+    let all = best.iter_mut().chain(beside).zip(&samples);
+    for ((_, run), samples) in all.filter(|(_, samples)| !samples.is_empty()) {
         run.ns_per_simulated_second = median(samples);
     }
     best.sort_by(|a, b| a.1.ns_per_simulated_second.total_cmp(&b.1.ns_per_simulated_second));
