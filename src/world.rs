@@ -331,7 +331,10 @@ impl<L: Lanes> World<L> {
             solving.decide_substep_groups(goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
         if repaced || !seen.still {
-            solving.prepare(bodies, self.narrow.found(), seen.changed || repaced, motion);
+            // Where nothing has moved no pair was looked at: the lists are those of an earlier step.
+            let (manifolds, looked_at) = self.narrow.found();
+            let looked_at = looked_at.filter(|_| !seen.still);
+            solving.prepare(bodies, (manifolds, looked_at), seen.changed || repaced, motion);
             solving.note_depth(|| self.narrow.deepest(), context.needs.length);
         }
         let awake = self.islands.awake_beside_sleepers();

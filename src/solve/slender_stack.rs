@@ -31,6 +31,8 @@ use crate::lanes::{Lanes, Real};
 const MOST_SAG: f64 = 1.3e-3;
 /// Under standard gravity 13 boxes of 1 m on each other, or one of 4 cm, are borne by 4 substeps; ten sink by 1.5e-3.
 const BORNE: f64 = 2.0;
+/// Contacts there is room for from the beginning.
+const ROOM: usize = 64;
 /// A body with joints has at least so many contacts: more than can be peeled off it.
 const JOINED: u32 = 1 << 30;
 
@@ -68,12 +70,19 @@ struct Part {
 }
 
 /// Slender stacks; memory is kept from look to look.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct SlenderStacks {
     edges: Vec<Edge>,
     parts: Vec<Part>,
     /// Slots with one contact left.
     loose: Vec<u32>,
+}
+
+impl Default for SlenderStacks {
+    fn default() -> Self {
+        // A world whose bodies touch but now and then does not allocate when they do.
+        Self { edges: Vec::with_capacity(ROOM), parts: Vec::new(), loose: Vec::new() }
+    }
 }
 
 impl SlenderStacks {
@@ -93,7 +102,8 @@ impl SlenderStacks {
         needs: &mut Vec<[f64; 2]>,
     ) {
         needs.clear();
-        if self.edges.is_empty() {
+        // Discs alone do not stand on each other.
+        if !self.edges.iter().any(|edge| edge.turn > 0.0) {
             return;
         }
         needs.resize(bodies.len(), [0.0; 2]);

@@ -8,6 +8,7 @@ use anyhow::Context;
 use lamina::gate;
 use lamina::report::peers::{self, Peers};
 use lamina::report::sweep::{self, Sweep};
+use lamina::report::wild;
 use lamina::report::{
     self, Data, EXPERIMENTS, Earlier, Experiment, Record, Stopped, Table, compare, instructions, readme,
     strip,
@@ -47,6 +48,9 @@ pub(crate) struct Args {
     /// What lamina stress found, to be shown; left out where there is no such file.
     #[arg(long, value_name = "FILE", default_value = "reports/stress/stress.json")]
     stress: PathBuf,
+    /// What lamina-peers wild found, to be shown; left out where there is no such file.
+    #[arg(long, value_name = "FILE", default_value = "reports/wild.json")]
+    wild: PathBuf,
     /// The accuracy sweep of an earlier full report, to be shown where this one has none; left out where there is no such
     /// file.
     #[arg(long, value_name = "FILE", default_value = "reports/accuracy.json")]
@@ -76,14 +80,14 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
             .with_context(|| format!("--out: cannot write into {}", folder.display()))
             .map_err(refuse)?;
     }
-    let Beside { peers, instructions, stress, accuracy } = beside(args).map_err(refuse)?;
+    let Beside { peers, instructions, stress, wild, accuracy } = beside(args).map_err(refuse)?;
     let quick = !(args.full || args.publish);
     let mut data = measure(quick, &Experiment::of_report(quick))?;
     if data.not_run.is_empty() {
         data.strips = strip::strips()?;
     }
     let earlier_accuracy = accuracy.filter(|_| data.accuracy.lines.is_empty());
-    let data = Data { peers, instructions, stress, earlier_accuracy, ..data };
+    let data = Data { peers, instructions, stress, wild, earlier_accuracy, ..data };
     let folders = if data.not_run.is_empty() { &folders[..] } else { &folders[..1] };
     for folder in folders {
         report::write(&data, folder)
@@ -127,6 +131,7 @@ struct Beside {
     peers: Option<Peers>,
     instructions: (Vec<instructions::Row>, Option<Earlier>),
     stress: (Vec<stress::Row>, Option<Earlier>),
+    wild: (Vec<wild::Line>, Option<Earlier>),
     accuracy: Option<Sweep>,
 }
 
@@ -136,10 +141,11 @@ fn beside(args: &Args) -> anyhow::Result<Beside> {
     let counts = args.instructions.exists().then(|| gate::baseline(&args.instructions)).transpose()?;
     let last = counts.as_ref().and_then(|counts| counts.baseline.last());
     let stress = if args.stress.exists() { stress::write::read(&args.stress)? } else { Default::default() };
+    let wild = if args.wild.exists() { wild::read(&args.wild)? } else { Default::default() };
     let instructions =
         (last.map(instructions::rows).unwrap_or_default(), last.and_then(instructions::earlier));
     let accuracy = args.accuracy.exists().then(|| sweep::read(&args.accuracy)).transpose()?;
-    Ok(Beside { peers, instructions, stress, accuracy })
+    Ok(Beside { peers, instructions, stress, wild, accuracy })
 }
 
 /// The experiments of a list of names.

@@ -11,6 +11,7 @@ use super::headline::{Headline, headlines};
 use super::peers::{self, Peers};
 use super::strip::Strip;
 use super::sweep::{self, Sweep};
+use super::wild;
 use super::{Machine, instructions};
 use crate::accuracy::Line;
 use crate::present::Earlier;
@@ -63,6 +64,9 @@ pub struct Data {
     /// What `lamina stress` found, in a file of its own.
     #[serde(skip)]
     pub stress: (Vec<stress::Row>, Option<Earlier>),
+    /// What `lamina-peers wild` found, in a file of its own.
+    #[serde(skip)]
+    pub wild: (Vec<wild::Line>, Option<Earlier>),
     /// What the scenes look like, in files of their own.
     #[serde(skip)]
     pub strips: Vec<Strip>,
@@ -220,6 +224,7 @@ impl Data {
             peers: None,
             instructions: Default::default(),
             stress: Default::default(),
+            wild: Default::default(),
             strips: Vec::new(),
         }
     }
@@ -284,6 +289,7 @@ impl Data {
             Table::of(&self.stability)?,
             Table::of(&self.peers.as_ref().map(Peers::scenes).unwrap_or_default())?.of_run(of_peers()),
             Table::of(self.peers.as_ref().map_or(&[][..], |peers| &peers.rows))?.of_run(of_peers()),
+            Table::of(&self.wild.0)?.of_run(self.wild.1.clone()),
             Table::of(&stress::pass_lines(rows_of_stress))?.of_run(of_stress.clone()),
             Table::of(&stress::limit_lines(rows_of_stress))?.of_run(of_stress.clone()),
             Table::of(&self.contacts)?,
@@ -312,7 +318,11 @@ impl Data {
             match table.name.as_str() {
                 matrix::Row::NAME if !self.headlines().is_empty() => {}
                 // In files of their own.
-                peers::Row::NAME | instructions::Row::NAME | PassLine::NAME | LimitLine::NAME => {}
+                peers::Row::NAME
+                | instructions::Row::NAME
+                | PassLine::NAME
+                | LimitLine::NAME
+                | wild::Line::NAME => {}
                 Headline::NAME => {
                     summary.insert("rows".to_owned(), json!(table.raw));
                 }

@@ -7,7 +7,7 @@
 //! | `headline` | the result table |
 //! | [`sweep`] | an accuracy sweep of an earlier run |
 //! | `readme` | what the README repeats |
-//! | [`peers`] | what `lamina-peers` measured, read from its file |
+//! | [`peers`], [`wild`] | what `lamina-peers` measured, and how many wild scenes each engine gets right, read from its files |
 //! | [`instructions`] | what `lamina gate` holds, read from its file |
 //! | `plots` | SVG from rows |
 //! | [`strip`] | SVG of scenes at a few moments |
@@ -25,6 +25,7 @@ mod plots;
 pub mod readme;
 pub mod strip;
 pub mod sweep;
+pub mod wild;
 
 use std::path::Path;
 

@@ -75,6 +75,12 @@ const GROUPS: &[Group] = &[
         tables: &["stress", "stress_limits"],
     },
     Group {
+        title: "In the wild",
+        intro: "What people report of engines like this one, and which engine gets it right.",
+        plots: &[],
+        tables: &["wild"],
+    },
+    Group {
         title: "Peers",
         intro: "Box2D v3 and rapier on the library's own scenes, body for body, in alternating windows of one process; \
                 the same f64 code measures every engine's overlaps and errors.",

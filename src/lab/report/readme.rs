@@ -10,7 +10,11 @@ struct Part {
     text: fn(&Data) -> Option<String>,
 }
 
-const PARTS: &[Part] = &[Part { name: "thesis", text: results }, Part { name: "fastest", text: fastest }];
+const PARTS: &[Part] = &[
+    Part { name: "thesis", text: results },
+    Part { name: "fastest", text: fastest },
+    Part { name: "wild", text: wild },
+];
 
 /// The README with the parts that this report has rows for.
 ///
@@ -71,6 +75,14 @@ fn fastest(data: &Data) -> Option<String> {
     let parts = [said(&["Smooth"]), said(&["A costlier", "Cheapest"])];
     let text: String = parts.into_iter().flatten().collect();
     (!text.is_empty()).then_some(text)
+}
+
+/// How many scenes from problem reports each engine gets right.
+fn wild(data: &Data) -> Option<String> {
+    let all = data.wild.0.iter().find(|line| line.kind == "all")?;
+    let of = |[right, cases]: [usize; 2]| format!("{right} of {cases}");
+    let (ours, box2d, rapier) = (of(all.lamina2d), of(all.box2d), of(all.rapier2d));
+    Some(format!("lamina2d gets {ours} right, Box2D {box2d} of those it can express, rapier {rapier}.\n"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use crate::shared_cli::lamina;
-use lamina::wild::{Case, Course, KINDS, What, cases, rows, tally};
+use lamina::wild::{Case, Course, KINDS, What, World, cases, rows, tally};
+use lamina2d::scene::{BodySpec, ShapeSpec};
+use lamina2d::settings::Precision;
 use lamina2d::simulation::BodyState;
 use serde_json::Value;
 
@@ -91,6 +93,25 @@ fn an_engine_that_does_nothing_is_found_out() {
     assert!(
         rows(case, broken).iter().all(|row| !row.met && row.note.as_deref() == Some("it has no such thing"))
     );
+}
+
+/// What is kilometres away, more of it and far larger than what is here, changes nothing that is right.
+#[test]
+fn what_is_far_away_changes_nothing() {
+    let ours = |case: &Case| Ok(Box::new(World::new(case, Precision::F32)?) as Box<dyn Course>);
+    let kinds = ["seams", "margins", "impacts", "restless", "weight"];
+    for case in cases().into_iter().filter(|case| kinds.contains(&case.kind)) {
+        let mut beside = case.clone();
+        let giant = |k: usize| {
+            let place = [1e4 + 300.0 * k as f64, -1e4];
+            BodySpec::new(ShapeSpec::Box([100.0, 50.0]), place).fixed()
+        };
+        beside.scene.bodies.extend((0..=case.scene.bodies.len()).map(giant));
+        let [alone, with] = [case, beside].map(|case| rows(&case, ours));
+        for (alone, with) in alone.iter().zip(with) {
+            assert_eq!(alone.met, with.met, "{alone:?}\n{with:?}");
+        }
+    }
 }
 
 #[test]
