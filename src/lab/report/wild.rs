@@ -44,7 +44,8 @@ impl Record for Line {
     const COMMAND: &'static str = "cargo run --release -p lamina-peers -- wild --out reports/wild.json";
     const NOTE: &'static str = "What people report of 2D engines, made into scenes with the numbers that must come out, each \
                                 worked out from a closed form. Right: every number of the case, of those the engine can \
-                                express; all as they come. Number by number: `lamina wild --all`.";
+                                express; all as they come, of discs, boxes and polygons (Box2D keeps chain shapes for \
+                                seams). Number by number: `lamina wild --all`.";
     const HEADER: &'static [&'static str] = &["kind", "lamina2d", "Box2D", "rapier"];
     fn cells(&self) -> Vec<String> {
         let of = |[right, cases]: [usize; 2]| format!("{right} of {cases}");

@@ -24,7 +24,7 @@ fn loads(contact: Option<Contact>, substep_secs: f64) -> Vec<f64> {
 pub(super) fn stack(trial: &Trial<'_>) -> anyhow::Result<f64> {
     let run = trial.finish()?;
     let of = |(k, wanted): (usize, f64)| {
-        let found: f64 = loads(between(&run, k, k + 1), trial.substep_secs()).iter().sum();
+        let found: f64 = loads(between(&run, k, k + 1), run.substep_secs()).iter().sum();
         relative(found, wanted)
     };
     Ok(worst(stack_loads(trial.scene).into_iter().enumerate().map(of)))
@@ -34,7 +34,7 @@ pub(super) fn stack(trial: &Trial<'_>) -> anyhow::Result<f64> {
 pub(super) fn offset(trial: &Trial<'_>) -> anyhow::Result<f64> {
     let run = trial.finish()?;
     let of = |(k, wanted): (usize, [f64; 2])| {
-        let found = loads(between(&run, k, k + 1), trial.substep_secs());
+        let found = loads(between(&run, k, k + 1), run.substep_secs());
         let point = |at: usize| relative(found.get(at).copied().unwrap_or(0.0), wanted[at]);
         worst([point(0), point(1)])
     };

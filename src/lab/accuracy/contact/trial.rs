@@ -66,6 +66,11 @@ pub(super) struct Run {
 }
 
 impl Run {
+    /// Seconds of a substep of the hardest island, which may have more than were asked for.
+    pub(super) fn substep_secs(&self) -> f64 {
+        self.h_secs / f64::from(self.world.counts().substeps[1])
+    }
+
     /// One step; false where the end was reached before.
     pub(super) fn step(&mut self) -> anyhow::Result<bool> {
         if self.taken == self.steps {
