@@ -200,7 +200,7 @@ impl<R: Real> Bodies<R> {
     pub fn live(&self) -> usize {
         self.live
     }
-    /// Grows whenever a body is inserted, removed or given another mass or force.
+    /// Grows whenever a body is inserted, removed, put elsewhere or given another mass or force.
     pub fn revision(&self) -> u64 {
         self.revision
     }

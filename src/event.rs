@@ -32,7 +32,7 @@ pub enum Action {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         mass: Option<f64>,
     },
-    /// A body is elsewhere all at once; what it touched there it touches no more.
+    /// A body is elsewhere all at once; what it touched is found anew.
     Teleport {
         /// The body.
         slot: u32,

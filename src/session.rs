@@ -72,7 +72,7 @@ impl Session {
     /// Advances to a step, doing `events` when they are due: those of steps before the world's own have been done.
     ///
     /// # Errors
-    /// An event that is refused.
+    /// An event that is refused, or one of the scene that cannot be done.
     pub fn follow(&mut self, events: &[Event], to: u64) -> Result<(), ActionError> {
         while self.world.steps() < to {
             let now = self.world.steps();
@@ -81,7 +81,9 @@ impl Session {
                 self.apply(event.action.clone())?;
             }
             // A state that is not finite was one when it was recorded: it is compared like any other.
-            let _ = self.step();
+            if let Err(why @ StepError::Event { .. }) = self.step() {
+                return Err(ActionError::Event(why.to_string()));
+            }
         }
         Ok(())
     }

@@ -32,6 +32,8 @@ impl<R: Real> Bodies<R> {
             self.set_place(slot, position);
         }
         self.revision += 1;
+        // What was known of its pairs is as if it had come anew.
+        self.removals += 1;
         Ok(())
     }
 
@@ -61,7 +63,6 @@ impl<R: Real> Bodies<R> {
         if let Some([x, y]) = velocity {
             (self.vx[slot], self.vy[slot]) = (R::from_f64(x), R::from_f64(y));
         }
-        self.revision += 1;
         Ok(())
     }
 

@@ -54,8 +54,8 @@
 //! ```
 //!
 //! # Events
-//! What is done before the first step that begins after `step` steps, or at `time` or later; those due at once are done in
-//! the order of the file. Bodies go by their numbers, from 0; those that come count on. All are tried before the first step.
+//! What is done before the first step that begins after `step` steps of the file's own length, or at `time` or later; those due
+//! at once are done by their times, then in the order of the file. Bodies go by their numbers, from 0; those that come count on. All are tried before the first step.
 //!
 //! | action | fields |
 //! |---|---|

@@ -102,7 +102,6 @@ impl SlenderStacks {
         needs: &mut Vec<[f64; 2]>,
     ) {
         needs.clear();
-        // Discs alone do not stand on each other.
         if !self.edges.iter().any(|edge| edge.turn > 0.0) {
             return;
         }
@@ -128,7 +127,8 @@ impl SlenderStacks {
             let size =
                 if movable(below) { sizes[0].min(sizes[1]) } else { bodies.radius[slot as usize].to_f64() };
             let sinking = goal.sinking(edge.pressed(slot, &part), edge.mass) / (MOST_SAG * size);
-            let asks = goal.holds_up && sinking > BORNE * f64::from(goal.base).powi(2);
+            // Discs alone do not stand on each other.
+            let asks = goal.holds_up && edge.turn > 0.0 && sinking > BORNE * f64::from(goal.base).powi(2);
             let sinking = if asks && part.rests(bodies, slot as usize) { sinking } else { 0.0 };
             needs[slot as usize] = [sum, sinking].each(f64::sqrt);
             self.parts[slot as usize].contacts = 0;

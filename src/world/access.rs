@@ -135,9 +135,13 @@ impl<L: Lanes> World<L> {
         angular_velocity: Option<f64>,
     ) -> Result<(), BodyError> {
         self.bodies.set_velocity(id, velocity, angular_velocity)?;
-        match self.bodies.kind(id.slot()) {
-            BodyKind::Dynamic => self.islands.wake(id.slot()),
-            _ => self.islands.wake_all(),
+        self.motion.assume_fast_bodies();
+        self.log.watchdog.forget();
+        if self.bodies.kind(id.slot()) == BodyKind::Dynamic {
+            self.islands.wake(id.slot());
+        } else {
+            self.look_again();
+            self.islands.wake_all();
         }
         Ok(())
     }

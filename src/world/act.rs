@@ -30,6 +30,9 @@ pub enum ActionError {
         /// What was given.
         value: f64,
     },
+    /// What the scene does to itself could not be done.
+    #[error("{0}")]
+    Event(String),
     /// A body or its mass.
     #[error(transparent)]
     Body(#[from] BodyError),
@@ -110,10 +113,15 @@ impl<L: Lanes> World<L> {
         }
         let (steps, time_secs) = (self.log.steps, self.log.time_secs);
         let is_due = |event: &mut (usize, SceneEvent)| event.1.is_due(steps, time_secs, dt_secs);
-        let due: Vec<_> = self.laws.acts.waiting.extract_if(.., is_due).collect();
-        for (event, at) in due {
-            let refused = |why| StepError::Event { step: steps + 1, event, why };
-            self.perform(at.action).map_err(refused)?;
+        let mut due: Vec<_> = self.laws.acts.waiting.extract_if(.., is_due).collect();
+        // In the order they were tried in.
+        due.sort_by(|(_, a), (_, b)| a.secs(dt_secs).total_cmp(&b.secs(dt_secs)));
+        for k in 0..due.len() {
+            let (event, at) = due[k].clone();
+            if let Err(why) = self.perform(at.action) {
+                self.laws.acts.waiting.splice(0..0, due.drain(k..));
+                return Err(StepError::Event { step: steps + 1, event, why });
+            }
         }
         if let Some(pull) = self.laws.acts.pull {
             match self.bodies.check_alive(pull.id).map(|slot| self.bodies.kind(slot)) {

@@ -10,7 +10,7 @@
 //! Contacts of what falls asleep are put down to their pairs' rows before the runs change, and taken up from there when it
 //! wakes. Such a step is never a still one, so that new constraints and the warm start are made.
 
-use super::World;
+use super::{World, WorldError};
 use crate::body::{Bodies, BodyError, BodyId};
 use crate::each::Each as _;
 use crate::force::Forces;
@@ -134,8 +134,15 @@ impl<L: Lanes> World<L> {
     pub fn set_forces(&mut self, forces: Forces) -> Result<(), SceneError> {
         forces.check_in::<L::Elem>()?;
         forces.check_coupling(self.bodies.len(), &self.settings)?;
+        let in_step = self.laws.forces.attraction.is_some() != forces.attraction.is_some();
         self.laws.forces = forces;
         self.laws.revision += 1;
+        if in_step {
+            // Bodies that attract each other have one number of substeps, others may have many: nothing of that is kept.
+            if let Err(WorldError::Scene(why)) = self.set_settings(self.settings) {
+                return Err(why);
+            }
+        }
         self.look_again();
         self.islands.wake_all();
         Ok(())

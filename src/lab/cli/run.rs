@@ -155,6 +155,8 @@ fn name_body(scene: &Scene, error: StepError) -> anyhow::Error {
 
 fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
     let (scene, asked) = cases::load(&args.scene, args.bodies, args.seed).map_err(refuse)?;
+    // Steps of another length do at the same times what the scene does at steps of its own.
+    let scene = if args.dt.is_some_and(|dt| dt != scene.dt_secs) { scene.timed() } else { scene };
     let precision = args.precision.unwrap_or(asked.precision);
     let default_lanes =
         if precision == asked.precision { asked.lanes } else { asked.with_precision(precision).lanes };

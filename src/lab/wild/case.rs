@@ -50,7 +50,7 @@ pub enum What {
     Momentum(usize),
     /// Angular momentum about the origin at the end, N·m·s.
     AngularMomentum,
-    /// Bodies that sleep at the end; no peer says so.
+    /// Bodies that sleep at the end.
     Asleep,
     /// Is the scene refused before its first step? 1 if so.
     Refused,

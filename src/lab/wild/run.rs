@@ -140,15 +140,13 @@ pub fn tally<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Tally {
 /// Runs a case in what `build` makes of it and holds it to its numbers.
 pub fn rows(case: &Case, build: impl FnOnce(&Case) -> anyhow::Result<Box<dyn Course>>) -> Vec<Row> {
     let mut found = vec![None; case.expects.len()];
-    let mut note = None;
+    let (mut note, mut refused) = (None, false);
     match build(case) {
-        Err(why) => note = Some(format!("{why:#}")),
+        Err(why) => (note, refused) = (Some(format!("{why:#}")), true),
         Ok(mut world) => {
-            note = follow(case, world.as_mut(), &mut found).err().map(|why| format!("{why:#}")).or(note)
+            note = follow(case, world.as_mut(), &mut found).err().map(|why| format!("{why:#}")).or(note);
         }
     }
-    // Neither a world nor a first step to be had: refused, as it should be where that is expected.
-    let refused = note.is_some() && found.iter().all(Option::is_none);
     let row = |(expect, found): (&Expect, Option<f64>)| {
         let found = if expect.what == What::Refused { Some(f64::from(u8::from(refused))) } else { found };
         Row {

@@ -1,7 +1,5 @@
 //! `lamina wild` as users run it: rows with the fields others script against, counts that follow from them, refusals.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use crate::shared_cli::lamina;
 use lamina::wild::{Case, Course, KINDS, What, World, cases, rows, tally};
 use lamina2d::scene::{BodySpec, ShapeSpec};
