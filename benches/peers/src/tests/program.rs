@@ -101,3 +101,31 @@ fn the_plan_is_listed() {
         assert!(said.contains("stack/10, "), "{said}");
     }
 }
+
+/// Every engine is held to the same numbers; what it cannot express is a gap, and counts follow from the rows.
+#[test]
+fn wild_cases_are_counted_by_engine() {
+    let output = peers(&["wild", "margins", "events", "--json"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (rows, counts) = (document["rows"].as_array().unwrap(), document["counts"].as_array().unwrap());
+    for (count, engine) in counts.iter().zip(["lamina2d", "box2d", "rapier2d"]) {
+        assert_eq!(count["engine"], engine);
+        let of = |row: &&Value| row["engine"] == engine;
+        let names = |met: bool| -> std::collections::BTreeSet<_> {
+            let found = rows.iter().filter(of).filter(|row| !met || row["met"] == false);
+            found.map(|row| row["case"].as_str().unwrap()).collect()
+        };
+        let (all, wrong) = (names(false).len(), names(true).len());
+        assert_eq!(
+            (count["cases"].as_u64().unwrap(), count["right"].as_u64().unwrap()),
+            (all as u64, (all - wrong) as u64)
+        );
+        assert!(all >= 8 && all - wrong >= 4, "{engine}: {wrong} of {all} wrong");
+    }
+    let gaps = document["gaps"].as_array().unwrap();
+    assert!(
+        gaps.len() >= 16 && gaps.iter().all(|gap| gap["why"].as_str().unwrap().contains("done to it")),
+        "{gaps:?}"
+    );
+}
