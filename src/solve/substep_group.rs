@@ -1,8 +1,8 @@
 //! Substeps per island: hard piles get more, quiet ones fewer.
 //!
 //! Unless substeps are fixed, an island in which a slender stack would buckle gets those that [`slender_stack`](super::slender_stack)
-//! asks for, or what presses hard would sink in: always on, as it costs a look every [`TOWER_STEPS`] steps until there is one. A bound on the sag is asked
-//! for by the settings.
+//! asks for, or what presses hard would sink in: always on, as it costs a look every [`TOWER_STEPS`] steps until there is
+//! one. A bound on the sag is asked for by the settings.
 //!
 //! A contact that carries N sags by s ≈ N/(m_eff·ω²), ω = 2π·hz with hz·h the stiffness: of n substeps in a
 //! step of dt, by (N/m_eff)·dt²/(n²·(2π·hz·h)²). With a bound on the sag each island has the n its hardest contact asks for.

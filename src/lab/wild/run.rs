@@ -1,5 +1,7 @@
 //! A case with an engine, held to its numbers.
 
+use lamina2d::force::Forces;
+use lamina2d::measure::Invariants;
 use lamina2d::scene::{BodyKind, Scene};
 use lamina2d::settings::{Precision, Settings};
 use lamina2d::simulation::{BodyState, Simulation, simulate};
@@ -198,23 +200,22 @@ fn follow(case: &Case, world: &mut dyn Course, found: &mut [Option<f64>]) -> any
             continue;
         }
         let states = world.states();
+        let sums = sums(&states, &masses);
         for (expect, found) in case.expects.iter().zip(&mut *found) {
             let seen = match expect.what {
                 What::Body { body, column, step: at } if at == step => {
                     Some(states.get(body).map_or(f64::NAN, |state| number(state, column)))
                 }
                 What::KineticAlways => {
-                    let energy = kinetic(&states, &masses);
+                    let energy = sums.kinetic_energy;
                     let off = |energy: f64| (energy - expect.expected).abs();
                     // What is no number stays.
                     Some(found.filter(|&worst| worst.is_nan() || off(worst) >= off(energy)).unwrap_or(energy))
                 }
                 _ if step != steps => None,
-                What::Kinetic => Some(kinetic(&states, &masses)),
-                What::Momentum(axis) => Some(
-                    states.iter().zip(&masses).map(|(state, [mass, _])| mass * state.velocity[axis]).sum(),
-                ),
-                What::AngularMomentum => Some(states.iter().zip(&masses).map(|(s, m)| turning(s, *m)).sum()),
+                What::Kinetic => Some(sums.kinetic_energy),
+                What::Momentum(axis) => Some(sums.momentum[axis]),
+                What::AngularMomentum => Some(sums.angular_momentum),
                 What::Asleep => world.asleep().map(|count| count as f64),
                 What::Body { .. } | What::Refused => None,
             };
@@ -250,18 +251,11 @@ fn masses(scene: &Scene) -> Vec<[f64; 2]> {
     scene.bodies.iter().map(of).collect()
 }
 
-/// ½mv² + ½Iω² of all bodies, J.
-fn kinetic(states: &[BodyState], masses: &[[f64; 2]]) -> f64 {
-    let of = |(state, [mass, inertia]): (&BodyState, &[f64; 2])| {
-        let [vx, vy] = state.velocity;
-        let w = state.angular_velocity;
-        0.5 * (mass * (vx * vx + vy * vy) + inertia * w * w)
-    };
-    states.iter().zip(masses).map(of).sum()
-}
-
-/// m·x×v + Iω of a body about the origin, N·m·s.
-fn turning(state: &BodyState, [mass, inertia]: [f64; 2]) -> f64 {
-    let ([x, y], [vx, vy]) = (state.position, state.velocity);
-    mass * (x * vy - y * vx) + inertia * state.angular_velocity
+/// Energy and momenta of all bodies, as every engine's are summed; no field has a part in them.
+fn sums(states: &[BodyState], masses: &[[f64; 2]]) -> Invariants {
+    let mut sums = Invariants::default();
+    for (state, &mass) in states.iter().zip(masses) {
+        sums.add(mass, state.position, state.velocity, state.angular_velocity, &Forces::default());
+    }
+    sums
 }
