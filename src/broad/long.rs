@@ -1,7 +1,8 @@
 //! Long and huge bodies: floors, walls, anything whose bounding circle says little.
 //!
-//! Each is tested against all bodies in lanes: bounding circles first, then the other's circle against
-//! the body's oriented box, clamped in the box's frame.
+//! A huge one is tested against all bodies in lanes: bounding circles first, then the other's circle against
+//! the body's oriented box, clamped in the box's frame. Others are found by their circles like plain bodies, and their pairs
+//! held against their boxes after: each against all, 1500 planks of aspect 4 took 5.6 times as long as such of 2.9.
 
 use super::{meet, ordered};
 use crate::body::{Bodies, BodyKind, Form};
@@ -23,20 +24,31 @@ struct Bound<R> {
     centre: [R; 2],
     /// Half-extents, widened like the bounding radius.
     half: [R; 2],
+    /// Tested against all; else found by its circle.
+    huge: bool,
 }
 
 /// The long bodies of a world, and the others.
 #[derive(Clone, Debug)]
 pub(super) struct LongBodies<R> {
     bounds: Vec<Bound<R>>,
+    /// Slots of bodies found by their circles, ascending.
     plain: Vec<u32>,
+    /// Some of these are long.
+    any_slender: bool,
     median_radius: f64,
     all_dynamic: bool,
 }
 
 impl<R> Default for LongBodies<R> {
     fn default() -> Self {
-        Self { bounds: Vec::new(), plain: Vec::new(), median_radius: 0.0, all_dynamic: false }
+        Self {
+            bounds: Vec::new(),
+            plain: Vec::new(),
+            any_slender: false,
+            median_radius: 0.0,
+            all_dynamic: false,
+        }
     }
 }
 
@@ -72,13 +84,17 @@ impl<R: Real> LongBodies<R> {
         self.median_radius = median;
         self.bounds.clear();
         self.plain.clear();
+        self.any_slender = false;
         self.all_dynamic = bodies.slots().all(|slot| bodies.kind(slot) == BodyKind::Dynamic);
         for slot in bodies.slots() {
             let (low, high) = extent(bodies, slot);
             let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
             let aspect = half[0].max(half[1]) / half[0].min(half[1]);
-            if aspect >= LONG_ASPECT || bodies.radius[slot].to_f64() > HUGE_RATIO * median {
+            let huge = bodies.radius[slot].to_f64() > HUGE_RATIO * median;
+            if aspect >= LONG_ASPECT || huge {
+                self.any_slender |= !huge;
                 self.bounds.push(Bound {
+                    huge,
                     slot: slot as u32,
                     centre: [
                         R::from_f64(f64::midpoint(low[0], high[0])),
@@ -86,13 +102,43 @@ impl<R: Real> LongBodies<R> {
                     ],
                     half: half.each(|h| R::from_f64(h * (1.0 + 1e-5))),
                 });
-            } else {
+            }
+            if !huge {
                 self.plain.push(slot as u32);
             }
         }
     }
 
-    /// Appends the pairs that have a long body in them.
+    /// Is a body in a slot huge?
+    pub(super) fn is_huge(&self, slot: u32) -> bool {
+        self.bound_of(slot).is_some_and(|bound| bound.huge)
+    }
+
+    fn bound_of(&self, slot: u32) -> Option<&Bound<R>> {
+        let at = self.bounds.binary_search_by_key(&slot, |bound| bound.slot).ok()?;
+        Some(&self.bounds[at])
+    }
+
+    /// Drops the pairs found by their circles whose boxes say no.
+    pub(super) fn hold_against_boxes(
+        &self,
+        bodies: &Bodies<R>,
+        reach: &Column<R>,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        if self.any_slender {
+            let meets = |own: u32, other: u32| {
+                self.bound_of(own).is_none_or(|bound| {
+                    let k = other as usize;
+                    let own = Placed::<R>::new(bodies, bound, reach);
+                    own.meets(bodies.x[k], bodies.y[k], bodies.radius[k] + reach[k]).any()
+                })
+            };
+            pairs.retain(|&[a, b]| meets(a, b) && meets(b, a));
+        }
+    }
+
+    /// Appends the pairs that have a huge body in them.
     pub(super) fn find<L: Lanes<Elem = R>>(
         &self,
         bodies: &Bodies<R>,
@@ -113,7 +159,7 @@ impl<R: Real> LongBodies<R> {
     ) {
         let (xs, ys) = (bodies.x.lanes::<L>(), bodies.y.lanes::<L>());
         let radii = bodies.radius.lanes::<L>();
-        for bound in self.bounds.iter().filter(|bound| wanted(bound.slot)) {
+        for bound in self.bounds.iter().filter(|bound| bound.huge && wanted(bound.slot)) {
             let own = Placed::<L>::new(bodies, bound, reach);
             for chunk in 0..bodies.len().div_ceil(L::WIDTH) {
                 let hits = own.meets(xs[chunk], ys[chunk], radii[chunk] + reach.lanes::<L>()[chunk]);
@@ -133,7 +179,7 @@ impl<R: Real> LongBodies<R> {
         others: &[u32],
         pairs: &mut Vec<[u32; 2]>,
     ) {
-        for bound in self.bounds.iter().filter(|bound| !wanted(bound.slot)) {
+        for bound in self.bounds.iter().filter(|bound| bound.huge && !wanted(bound.slot)) {
             let own = Placed::<R>::new(bodies, bound, reach);
             for &other in others {
                 let k = other as usize;
@@ -144,7 +190,7 @@ impl<R: Real> LongBodies<R> {
         }
     }
 
-    /// A pair of long bodies is met twice: the lower slot reports it, if the other's box agrees.
+    /// A pair of huge bodies is met twice: the lower slot reports it. If the other has a box, that must agree.
     fn accept(
         &self,
         bodies: &Bodies<R>,
@@ -157,11 +203,11 @@ impl<R: Real> LongBodies<R> {
         if other == bound.slot || other as usize >= bodies.len() {
             return;
         }
-        if let Ok(at) = self.bounds.binary_search_by_key(&other, |b| b.slot) {
+        if let Some(their) = self.bound_of(other) {
             let k = bound.slot as usize;
-            let theirs = Placed::<R>::new(bodies, &self.bounds[at], reach);
+            let theirs = Placed::<R>::new(bodies, their, reach);
             let radius = bodies.radius[k] + reach[k];
-            if other < bound.slot || !theirs.meets(bodies.x[k], bodies.y[k], radius).any() {
+            if (their.huge && other < bound.slot) || !theirs.meets(bodies.x[k], bodies.y[k], radius).any() {
                 return;
             }
         }

@@ -9,17 +9,18 @@
 //! |---|---|---|
 //! | `off` | no test: all pairs | never |
 //! | `brute` | each body against all later ones, in lanes | up to [`BRUTE_LIMIT`] bodies |
-//! | `sweep` | sorted along x, in lanes while x-ranges overlap | up to [`SWEEP_LIMIT`] |
+//! | `sweep` | sorted along the axis of the wider spread, in lanes while ranges overlap | up to [`SWEEP_LIMIT`] |
 //! | `grid` | sorted cells, three runs of whole lanes per body, levels by size | above |
 //!
 //! Measured on falling circles (µs, 8 lanes; `lamina run circles/N --broad B --skip none`): N = 150 brute 9,
 //! sweep 10, grid 24; 1000: 180, 105, 130; 10,000: sweep 1370, grid 1300; 100,000 in free flight: sweep 22
 //! ms, grid 13 ms. A run of cells holds about one circle, so grid gains nothing from lanes there.
 //!
-//! Long bodies never enter cells or x-order: each is tested against all others in lanes.
+//! Huge bodies never enter cells or the sweep: each is tested against all others in lanes. Long ones are found by their circles.
 //!
 //! While some bodies sleep ([`BroadPhase::freeze`]), only pairs with one that is awake are found, among these by the
-//! method for so many.
+//! method for so many. Where there are many static bodies ([`MANY_STATICS`]) they are always left out so: pairs of two are
+//! never looked at.
 
 mod brute;
 mod frozen;
@@ -30,15 +31,18 @@ mod order;
 mod reach;
 mod sweep;
 
-use crate::body::Bodies;
+use crate::body::{Bodies, BodyKind};
 use crate::column::Column;
 use crate::lanes::{Lanes, Real};
 use crate::settings::Broad;
 
 /// Up to this many bodies `auto` compares all with all.
 pub const BRUTE_LIMIT: usize = 400;
-/// Up to this many bodies `auto` sweeps along x.
+/// Up to this many bodies `auto` sweeps.
 pub const SWEEP_LIMIT: usize = 10_000;
+
+/// From so many static bodies on, which are not huge, they are kept apart from what may move.
+const MANY_STATICS: usize = 64;
 
 /// Bounding circles of some bodies, packed: the columns all methods test in lanes.
 ///
@@ -119,6 +123,8 @@ pub struct BroadPhase<R: Real> {
     grid: grid::Grid<R>,
     keep: keep::Keep<R>,
     frozen: frozen::Frozen<R>,
+    /// Some bodies sleep.
+    some_sleep: bool,
     kept: BroadCounts,
     /// Lists found so far.
     lists: u64,
@@ -139,6 +145,7 @@ impl<R: Real> Default for BroadPhase<R> {
             grid: grid::Grid::default(),
             keep: keep::Keep::default(),
             frozen: frozen::Frozen::default(),
+            some_sleep: false,
             kept: BroadCounts::default(),
             lists: 0,
             revision: None,
@@ -175,6 +182,9 @@ impl<R: Real> BroadPhase<R> {
             self.long.classify(bodies);
             self.revision = Some(bodies.revision());
             self.keep.forget();
+            if !self.some_sleep {
+                self.freeze_statics(bodies);
+            }
         }
         let median = self.long.median_radius();
         if median.is_finite() { median } else { 0.0 }
@@ -196,9 +206,22 @@ impl<R: Real> BroadPhase<R> {
     pub fn freeze(&mut self, bodies: &Bodies<R>, awake: Option<&[bool]>) {
         self.look_over(bodies);
         self.keep.forget();
+        self.some_sleep = awake.is_some();
         match awake {
             Some(awake) => self.frozen.sort(bodies, self.long.plain_slots(), awake),
-            None => self.frozen.active = false,
+            None => self.freeze_statics(bodies),
+        }
+    }
+
+    /// Where none sleeps, many statics count as asleep. Huge ones do not: they are tested in lanes.
+    fn freeze_statics(&mut self, bodies: &Bodies<R>) {
+        let is_static = |slot: u32| bodies.kind(slot as usize) == BodyKind::Static;
+        let statics = self.long.plain_slots().iter().filter(|&&slot| is_static(slot)).count();
+        self.frozen.active = false;
+        if statics >= MANY_STATICS {
+            let stirs = |slot: u32| !is_static(slot) || self.long.is_huge(slot);
+            let awake: Vec<bool> = (0..bodies.len() as u32).map(stirs).collect();
+            self.frozen.sort(bodies, self.long.plain_slots(), &awake);
         }
     }
 
@@ -247,6 +270,7 @@ impl<R: Real> BroadPhase<R> {
         if self.frozen.active {
             return self.find_beside_frozen::<L>(bodies);
         }
+        self.long.hold_against_boxes(bodies, &self.reach.together, &mut self.pairs);
         let plain = self.pairs.len();
         self.long.find::<L>(bodies, &self.reach.alone, &mut self.pairs);
         if method == Broad::Brute {
@@ -260,6 +284,7 @@ impl<R: Real> BroadPhase<R> {
     fn find_beside_frozen<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
         let (frozen, reach) = (&self.frozen, &self.reach);
         frozen.find::<L>(&self.circles, reach.at_rest, &mut self.pairs);
+        self.long.hold_against_boxes(bodies, &reach.together, &mut self.pairs);
         let awake = |slot| frozen.is_awake(slot);
         self.long.find_of::<L>(bodies, &reach.alone, awake, &mut self.pairs);
         self.long.find_near(bodies, &reach.alone, awake, frozen.awake_slots(), &mut self.pairs);

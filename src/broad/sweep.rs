@@ -1,4 +1,6 @@
-//! Sweep along x: circles sorted by their left ends, each tested in lanes while x-ranges overlap.
+//! Sweep along an axis: circles sorted by their lower ends, each tested in lanes while ranges overlap. The axis is the one along
+//! which they are spread wider, by [`CLEARLY`]: on the other, discs above each other would all overlap. Coordinates are exchanged
+//! for it, which no test minds: squares are added in either order to the same bits.
 //!
 //! The order of the last step is nearly right for this one, so an insertion sort keeps it. Ties are
 //! broken by slot: the order never depends on history.
@@ -8,19 +10,25 @@
 //! With bare ends a pair whose r + r' rounds up was lost, or found by wider lanes alone.
 
 use super::{Circles, ordered};
+use crate::column::Column;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 
-/// The circles sorted by left end.
+/// The axis changes where the other spread is so many times this one.
+const CLEARLY: f64 = 2.0;
+
+/// The circles sorted by lower end.
 #[derive(Clone, Debug)]
 pub(super) struct Sweep<R: Real> {
     /// Positions in the packed circles, sorted.
     order: Vec<u32>,
+    /// Their x and y, exchanged where the axis is y.
     sorted: Circles<R>,
+    along_y: bool,
 }
 
 impl<R: Real> Default for Sweep<R> {
     fn default() -> Self {
-        Self { order: Vec::new(), sorted: Circles::new() }
+        Self { order: Vec::new(), sorted: Circles::new(), along_y: false }
     }
 }
 
@@ -30,6 +38,7 @@ impl<R: Real> Sweep<R> {
     }
 
     pub(super) fn find<L: Lanes<Elem = R>>(&mut self, circles: &Circles<R>, pairs: &mut Vec<[u32; 2]>) {
+        self.choose_axis(circles);
         self.sort(circles);
         let n = self.sorted.len();
         for a in 0..n {
@@ -48,10 +57,26 @@ impl<R: Real> Sweep<R> {
         }
     }
 
+    /// By mean distance from the mean, which outliers move little.
+    fn choose_axis(&mut self, circles: &Circles<R>) {
+        let spread = |column: &Column<R>| {
+            let values = &column.padded()[..circles.len()];
+            let mean = values.iter().map(|v| v.to_f64()).sum::<f64>() / values.len() as f64;
+            values.iter().map(|v| (v.to_f64() - mean).abs()).sum::<f64>()
+        };
+        let (x, y) = (spread(&circles.x), spread(&circles.y));
+        let changes = if self.along_y { x > CLEARLY * y } else { y > CLEARLY * x };
+        if changes {
+            self.along_y = !self.along_y;
+            self.order.clear();
+        }
+    }
+
     fn sort(&mut self, circles: &Circles<R>) {
         let n = circles.len();
-        let left_end = |at: usize| circles.x[at] - widened(circles.r[at]);
-        let key = |at: u32| (left_end(at as usize), circles.slot[at as usize]);
+        let along = if self.along_y { &circles.y } else { &circles.x };
+        let lower_end = |at: usize| along[at] - widened(circles.r[at]);
+        let key = |at: u32| (lower_end(at as usize), circles.slot[at as usize]);
         let before = |a: u32, b: u32| key(a) < key(b);
         if self.order.len() == n {
             for k in 1..n {
@@ -69,7 +94,8 @@ impl<R: Real> Sweep<R> {
             self.sorted.resize(n);
         }
         for (to, &from) in self.order.iter().enumerate() {
-            self.sorted.set(to, circles.get(from as usize));
+            let (x, y, r, slot) = circles.get(from as usize);
+            self.sorted.set(to, if self.along_y { (y, x, r, slot) } else { (x, y, r, slot) });
         }
     }
 }

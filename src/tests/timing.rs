@@ -1,4 +1,4 @@
-//! Acceptance of the thesis baseline's timings: ratios and trends it published. `cargo test --release --test timing -- --nocapture --test-threads 1`
+//! Acceptance of timings: the thesis baseline's ratios and trends, and that scenes alike cost alike. `cargo test --release --test timing -- --nocapture --test-threads 1`
 
 #[path = "shared/thesis.rs"]
 mod shared_thesis;
@@ -6,6 +6,11 @@ mod shared_thesis;
 use std::time::Instant;
 
 use lamina::thesis::{ThesisIntegrator, ThesisWorld, Version};
+use lamina2d::force::Forces;
+use lamina2d::scene::named::scene;
+use lamina2d::scene::{BodySpec, ShapeSpec};
+use lamina2d::settings::Settings;
+use lamina2d::simulation::simulate;
 use shared_thesis::{MIXES, continued, mix, run, world_with};
 
 /// A case of the timing table: a settled world and the times of its windows.
@@ -107,4 +112,67 @@ fn timing_of_the_bounding_test_has_the_published_trend() {
             assert!(ratios[3] > ratios[0]);
         }
     }
+}
+
+/// The least time of a step over windows that alternate between scenes, ms.
+fn least_ms(scenes: &[Vec<BodySpec>]) -> Vec<f64> {
+    let begun = |bodies: &Vec<BodySpec>| {
+        let scene = scene("cliff", bodies.clone(), Forces::default(), 60);
+        simulate(&scene, Settings { dt_secs: 1.0 / 60.0, ..Settings::default() })
+            .expect("a scene that can be run")
+    };
+    let mut worlds: Vec<_> = scenes.iter().map(begun).collect();
+    let mut least = vec![f64::INFINITY; worlds.len()];
+    for _ in 0..12 {
+        for (world, least) in worlds.iter_mut().zip(&mut least) {
+            let start = Instant::now();
+            for _ in 0..20 {
+                world.step(1.0 / 60.0).expect("stays finite");
+            }
+            *least = least.min(start.elapsed().as_secs_f64() * 1e3 / 20.0);
+        }
+    }
+    println!("{least:.4?} ms");
+    least
+}
+
+/// `count` bodies of a shape in a square, `apart` metres from each other, at up to 1 m/s.
+fn flying(count: usize, apart: f64, shape: &ShapeSpec) -> Vec<BodySpec> {
+    let side = (count as f64).sqrt().ceil() as usize;
+    let body = |k: usize| {
+        let at = [(k % side) as f64 * apart, (k / side) as f64 * apart];
+        let turn = 2.4 * k as f64;
+        BodySpec::new(shape.clone(), at).turned(turn).moving([turn.cos(), turn.sin()], 0.0).surface(1.0, 0.0)
+    };
+    (0..count).map(body).collect()
+}
+
+/// What a step costs has no cliffs: planks little longer than others, lines one way or the other, statics in a heap.
+#[test]
+fn neighbours_cost_alike() {
+    let planks = |aspect: f64| flying(1500, 2.0, &ShapeSpec::Box([0.2 * aspect, 0.2]));
+    let of_planks = least_ms(&[2.9, 3.1, 4.0, 5.0].map(planks));
+    for pair in of_planks.windows(2) {
+        assert!(pair[1] < 2.0 * pair[0], "{of_planks:?}");
+    }
+    let line = |way: [f64; 2]| {
+        let disc = |k: usize| {
+            let at = way.map(|way| way * 0.3 * k as f64);
+            let speed = (1.7 * k as f64).sin();
+            BodySpec::new(ShapeSpec::Circle(0.1), at)
+                .moving(way.map(|way| way * speed), 0.0)
+                .surface(1.0, 0.0)
+        };
+        (0..1500).map(disc).collect::<Vec<_>>()
+    };
+    let of_lines = least_ms(&[[1.0, 0.0], [0.0, 1.0]].map(line));
+    assert!(of_lines[1] < 2.0 * of_lines[0] && of_lines[0] < 2.0 * of_lines[1], "{of_lines:?}");
+    let heap = |count: usize| {
+        let fixed = |k: usize| BodySpec::new(ShapeSpec::Box([0.5; 2]), [1e-3 * k as f64, 0.0]).fixed();
+        let mut bodies: Vec<_> = (0..count).map(fixed).collect();
+        bodies.push(BodySpec::new(ShapeSpec::Circle(0.5), [1000.0, 0.0]).moving([1.0, 0.0], 0.0));
+        bodies
+    };
+    let of_heaps = least_ms(&[100, 1000].map(heap));
+    assert!(of_heaps[1] < 12.0 * of_heaps[0], "{of_heaps:?}");
 }

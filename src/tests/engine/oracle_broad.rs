@@ -380,3 +380,24 @@ fn a_grazing_contact_far_along_a_thin_floor_stays_a_candidate() {
     check::<f32>();
     check::<f64>();
 }
+
+/// Many statics, which are kept apart from what moves, and planks, which are found by their circles: every method finds the same
+/// pairs, and all that meet.
+#[test]
+fn many_statics_are_never_looked_at_in_pairs() {
+    let mut random = Pcg32::seed_from_u64(4711);
+    for statics in [10, 63, 64, 200] {
+        let mut one = |half: [f64; 2], wide: f64| {
+            let at = [random.random_range(-wide..wide), random.random_range(-wide..wide)];
+            BodySpec::new(ShapeSpec::Box(half), at).turned(random.random_range(0.0..6.3))
+        };
+        let mut specs: Vec<_> = (0..statics).map(|_| one([0.5, 0.4], 6.0).fixed()).collect();
+        specs.extend((0..60).map(|_| one([0.8, 0.2], 8.0)));
+        specs.extend((0..60).map(|_| one([0.3, 0.3], 8.0)));
+        specs.push(one([40.0, 0.1], 1.0).fixed());
+        let mut bodies = bodies_of::<f32>(&specs);
+        bodies.refresh_polygons();
+        let pairs = all_methods_agree(&bodies, 0.0, &format!("{statics} statics"));
+        meets_the_definition(&bodies, &pairs, 0.0);
+    }
+}
