@@ -5,6 +5,8 @@
 //! Each goes its way in a straight line at even speed and spin until it meets another body: there both get the impulse of
 //! their restitution and friction, and go on with what is left of the step, where either may meet again ([`MEETINGS`]).
 //! What happens within a step happens in the order of its instants; ties go by slots.
+//! What joints hold stops where it meets something and keeps its velocity, as does what it meets: what they part with the next
+//! step's contact finds, which knows the joints. Bounced as if it were free, a ball on a rod lost a twelfth of its energy.
 //!
 //! Whom it may meet: every static and kinematic body, and of dynamic ones those it has a candidate pair with, which reach as
 //! far as both move; none of those under a solver that hears of overlaps alone (`impulse`), whose pairs do not. Gravity is reckoned in: a body that meets something at the share t of a step has by then the velocity
@@ -122,6 +124,8 @@ pub(crate) struct Continuous<R: Real> {
     pairs: Vec<[u32; 2]>,
     /// Those that one may meet, while it looks ahead.
     beside: Vec<u32>,
+    /// Per slot, whether joints hold the body.
+    jointed: Vec<bool>,
 }
 
 impl<R: Real> Default for Continuous<R> {
@@ -134,6 +138,7 @@ impl<R: Real> Default for Continuous<R> {
             way_of: Vec::new(),
             pairs: Vec::new(),
             beside: Vec::new(),
+            jointed: Vec::new(),
         }
     }
 }
@@ -152,11 +157,21 @@ impl<R: Real> Continuous<R> {
         (wanted && (pairs > 0 || !self.obstacles.is_empty())).then_some(&mut self.fast)
     }
 
-    /// Lets the fast bodies of a step meet what is in their ways; those that do are marked in `has_moved`.
-    pub(crate) fn stop(&mut self, bodies: &mut Bodies<R>, around: &Around<'_, R>, has_moved: &mut [bool]) {
+    /// Lets the fast bodies of a step meet what is in their ways; those that do are marked in `has_moved`. `joined`: slots that
+    /// joints join.
+    pub(crate) fn stop(
+        &mut self,
+        bodies: &mut Bodies<R>,
+        around: &Around<'_, R>,
+        joined: impl Iterator<Item = [u32; 2]>,
+        has_moved: &mut [bool],
+    ) {
         if self.fast.is_empty() {
             return;
         }
+        self.jointed.clear();
+        self.jointed.resize(bodies.len(), false);
+        joined.flatten().for_each(|slot| self.jointed[slot as usize] = true);
         self.walls.clear();
         let walls = self.obstacles.iter().map(|&slot| Wall::new(bodies, slot as usize, around.dt_secs));
         self.walls.extend(walls);
@@ -365,6 +380,14 @@ impl<R: Real> Continuous<R> {
         own.velocity -= gained;
         let placed = self.ways[way].sweep.at(0.0);
         match with {
+            Other::Wall(_) if self.jointed[self.ways[way].slot] => self.stay(way),
+            Other::Way(other) if [way, other].into_iter().any(|way| self.jointed[self.ways[way].slot]) => {
+                self.go_to(other, at);
+                for way in [way, other] {
+                    self.stay(way);
+                }
+                self.expect_anew(bodies, around, [way, other]);
+            }
             Other::Wall(wall) => {
                 let slot = self.obstacles[wall] as usize;
                 let their = self.walls[wall].sweep.after(at).at(0.0);
@@ -391,15 +414,26 @@ impl<R: Real> Continuous<R> {
                 their.velocity += gained;
                 self.go_on(way, own, rest_secs, gained);
                 self.go_on(other, their, rest_secs, gained);
-                // Whoever was to meet one of the two looks again.
-                for k in 0..self.ways.len() {
-                    let expects = |with: Other| matches!(with, Other::Way(met) if met == way || met == other);
-                    if k == way || k == other || self.ways[k].next.is_some_and(|next| expects(next.with)) {
-                        self.look_ahead(bodies, around, k);
-                    }
-                }
+                self.expect_anew(bodies, around, [way, other]);
             }
         }
+    }
+
+    /// Two bodies have met: they, and whoever was to meet one of them, look ahead again.
+    fn expect_anew(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, [way, other]: [usize; 2]) {
+        for k in 0..self.ways.len() {
+            let expects = |with: Other| matches!(with, Other::Way(met) if met == way || met == other);
+            if k == way || k == other || self.ways[k].next.is_some_and(|next| expects(next.with)) {
+                self.look_ahead(bodies, around, k);
+            }
+        }
+    }
+
+    /// A body stays where it is for the rest of the step.
+    fn stay(&mut self, way: usize) {
+        let way = &mut self.ways[way];
+        (way.met, way.left) = (true, 0);
+        (way.sweep.moved, way.sweep.angle) = (DVec2::ZERO, 0.0);
     }
 
     /// A body is where it is at an instant of the step.

@@ -30,6 +30,15 @@ impl Sets {
         at
     }
 
+    /// The same, of sets that are not to be changed.
+    pub(crate) fn seen(&self, slot: u32) -> u32 {
+        let mut at = slot;
+        while self.parent[at as usize] != at {
+            at = self.parent[at as usize];
+        }
+        at
+    }
+
     /// Makes one set of those that two slots are in. `None` where they were in one, else its lowest slot and that of the
     /// set which it took in.
     pub(crate) fn join(&mut self, [a, b]: [u32; 2]) -> Option<[u32; 2]> {

@@ -252,7 +252,8 @@ impl<L: Lanes> World<L> {
             apart: self.broad.kept_apart(),
             seams: self.narrow.seams(),
         };
-        self.continuous.stop(&mut self.bodies, &around, &mut self.motion.has_moved);
+        let joined = self.joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
+        self.continuous.stop(&mut self.bodies, &around, joined, &mut self.motion.has_moved);
         for slot in self.continuous.met() {
             self.motion.outlook.any_has_moved = true;
             self.islands.wake(slot);
@@ -264,6 +265,7 @@ impl<L: Lanes> World<L> {
         self.log.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
         let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
         self.log.counts.direct_joints = self.solving.direct_joints();
+        self.log.counts.direct_contacts = if free_flight { 0 } else { self.solving.direct_contacts() };
         self.log.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
         self.log.counts.stiff = skipped.stiff as usize;
         self.check_finite(finite)?;
@@ -327,6 +329,9 @@ impl<L: Lanes> World<L> {
         seen: &Seen,
     ) -> (Skipped, bool) {
         let (bodies, motion, solving) = (&self.bodies, &mut self.motion, &mut self.solving);
+        let awake = (self.islands.awake_beside_sleepers(), self.made.awake());
+        // How many substeps joints take depends on who hangs on them.
+        solving.make_joints(context, bodies, &self.joints, awake);
         let repaced = goal.is_some_and(|goal| {
             solving.decide_substep_groups(goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
@@ -337,8 +342,7 @@ impl<L: Lanes> World<L> {
             solving.prepare(bodies, (manifolds, looked_at), seen.changed || repaced, motion);
             solving.note_depth(|| self.narrow.deepest(), context.needs.length);
         }
-        let awake = self.islands.awake_beside_sleepers();
-        solving.prepare_joints(context, bodies, &self.joints, (awake, self.made.awake()));
+        solving.prepare_joints(context, bodies, &self.joints, awake);
         let warm = solving.begin(context, bodies, &self.narrow.manifolds, motion);
         self.log.stopwatch.lap(Stage::Prepare);
         let (mut skipped, mut finite) = (Skipped::default(), true);

@@ -74,10 +74,11 @@ pub(super) fn collide<R: Real>(
     };
     let approach = (b.at(arms[1]) - a.at(arms[0])).dot(axis);
     let k = response(axis);
-    if approach >= 0.0 || k <= 0.0 {
+    let normal = -(1.0 + least(&bodies.restitution)) * approach / k;
+    // A state that is not finite is told of as the step ends.
+    if approach >= 0.0 || k <= 0.0 || !normal.is_finite() {
         return false;
     }
-    let normal = -(1.0 + least(&bodies.restitution)) * approach / k;
     give(a, b, axis * normal);
     let across = axis.perp();
     let slip = (b.at(arms[1]) - a.at(arms[0])).dot(across);

@@ -83,6 +83,8 @@ pub struct Counts {
     pub substeps: [u32; 2],
     /// Joints that were solved directly, as masses in their tree differ too much for visits.
     pub direct_joints: usize,
+    /// Contacts that were solved at once, as masses that hang together by them differ too much for visits.
+    pub direct_contacts: usize,
     /// Bodies whose fields a substep of their scheme cannot follow, advanced by what those do exactly: the most in a substep.
     pub stiff: usize,
     /// Per [`Skip`], how many bodies (motion) or contacts (contact terms) it spared work.

@@ -61,7 +61,7 @@ pub struct Motion<R: Real> {
     pub moved: Column<R>,
     /// Rows of four per slot: 1/m, 1/I, –, –.
     pub inverse_masses: Column<R>,
-    /// Rows of four per slot: acceleration at the step's beginning x, y, angular, –; only where something bounces.
+    /// Rows of four per slot: acceleration at the step's beginning x, y, angular, inverse mass; only where something bounces.
     pub acceleration: Column<R>,
     /// Path since the body last moved, turning counted at the bounding radius, metres.
     pub(crate) drift: Column<R>,
@@ -228,7 +228,8 @@ impl<R: Real> Motion<R> {
             for i in 0..BLOCK {
                 let spin = alpha.map_or(L::zero(), |a| a[i]);
                 store_four::<L>(&mut self.velocity, at + i, [v[i].x, v[i].y, w[i], matter.inv_mass[i]]);
-                store_four::<L>(&mut self.acceleration, at + i, [pull[i].x, pull[i].y, spin, L::zero()]);
+                let row = [pull[i].x, pull[i].y, spin, matter.inv_mass[i]];
+                store_four::<L>(&mut self.acceleration, at + i, row);
             }
         }
     }

@@ -32,6 +32,8 @@ pub(crate) struct Rebound<L> {
     since: L,
     /// What the contact stops that holds it from then on, which it will not have to, m/s.
     supported_velocity: L,
+    /// Has it bounced in this step, in an earlier round? 1 or 0.
+    bounced: L,
 }
 
 /// What was noted at a step's beginning, per batch and point.
@@ -80,7 +82,14 @@ impl<L: Lanes> Bounces<L> {
     /// Makes room for so many batches.
     pub(crate) fn resize(&mut self, [two, one]: [usize; 2]) {
         let zero = L::zero();
-        let none = Rebound { begins: zero, speed: zero, gap: zero, since: zero, supported_velocity: zero };
+        let none = Rebound {
+            begins: zero,
+            speed: zero,
+            gap: zero,
+            since: zero,
+            supported_velocity: zero,
+            bounced: zero,
+        };
         self.two.resize(two, [none; 2]);
         self.one.resize(one, [none; 1]);
     }
@@ -93,7 +102,7 @@ impl<L: Lanes> Bounces<L> {
 
 /// Rounds of joints and contacts after an impact on what joints hold: one round leaves a share of what the other took, cos² of
 /// the angle between them.
-const ROUNDS: u32 = 12;
+pub(super) const ROUNDS: u32 = 12;
 
 impl<L: Lanes> Bouncing<L> {
     /// As a step begins: rounds where something meets a body that joints hold. `rows`: velocities as the step begins.
@@ -212,7 +221,8 @@ fn rebound<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Re
     begins = L::select(again, zero, begins);
     let change = pull * since;
     let gap = (begins + L::lit(0.5) * change) * since;
-    Rebound { begins, speed: begins + change, gap, since, supported_velocity: zero.max(-change) }
+    let supported_velocity = zero.max(-change);
+    Rebound { begins, speed: begins + change, gap, since, supported_velocity, bounced: zero }
 }
 
 /// The pass that ends a step: points that bounce and were stopped part as noted.
@@ -250,7 +260,8 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
         let bounces: [L::Mask; POINTS] = crate::each::indexed(|k| {
             // One that nothing has stopped yet will be met in the next step.
             let stopped = (L::lit(-0.5) * noted[k].begins).le(normals.velocity(&c.points[k]));
-            zero.lt(noted[k].begins) & gaps[k].le(self.touch) & stopped
+            let touches = gaps[k].le(self.touch) | zero.lt(noted[k].bounced);
+            zero.lt(noted[k].begins) & touches & stopped
         });
         let where_bounces = |of: &dyn Fn(usize) -> L| -> [L; POINTS] {
             crate::each::indexed(|k| L::select(bounces[k], of(k), zero))
@@ -272,6 +283,7 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
             // An impact is no load to begin the next step with.
             c.points[k].velocity_impulse = L::select(bounces[k], zero, c.points[k].velocity_impulse);
             kept = kept.max(c.points[k].velocity_impulse);
+            noted[k].bounced = L::select(bounces[k], L::one(), noted[k].bounced);
             self.any |= bounces[k].any();
         }
         normals.end(c, &mut a, &mut b);

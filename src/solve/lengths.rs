@@ -12,7 +12,7 @@ pub(super) struct StepLengths {
     /// The longest step that contacts still remember, seconds; see [`soft::STIFFENING`].
     remembered_secs: f64,
     /// The substep that the impulses of joints belong to, seconds.
-    joint_h_secs: f64,
+    pub joint_h_secs: f64,
     /// This substep over that one.
     pub joint_scale: f64,
 }

@@ -1,6 +1,7 @@
 //! What a solver is: what it does to joints and contacts of a substep before bodies move, and after.
 
 use super::avbd::Avbd;
+use super::direct::DirectContacts;
 use super::joint::{JointStream, Stiffness};
 use super::stream::Stream;
 use super::{SolverContext, avbd, impulse, pgs, soft, xpbd};
@@ -16,6 +17,8 @@ pub(crate) struct Substep<'a, L: Lanes> {
     pub context: &'a SolverContext<'a, L::Elem>,
     /// Contacts of this substep group.
     pub stream: &'a mut Stream<L>,
+    /// Those of them that are solved at once.
+    pub direct: &'a mut DirectContacts,
     /// Joints, where this substep group solves them.
     pub joints: Option<&'a mut JointStream<L>>,
     /// Rows and displacements.

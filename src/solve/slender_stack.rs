@@ -93,12 +93,13 @@ impl SlenderStacks {
     }
 
     /// Substeps that the stack needs that stands on each body's way down, per slot: so as not to lean, and not to sink in;
-    /// the second below 0 for what holds on to itself in rings. `joined`: slots of joints.
+    /// the second below 0 for what holds on to itself in rings. `joined`: slots of joints; `rigid`: slots whose contacts do not
+    /// give way.
     pub(super) fn look<R: Real>(
         &mut self,
         goal: &Goal,
         (bodies, fields): (&Bodies<R>, &[Field<R>]),
-        joined: impl Iterator<Item = [u32; 2]>,
+        (joined, rigid): (impl Iterator<Item = [u32; 2]>, impl Fn(u32) -> bool),
         needs: &mut Vec<[f64; 2]>,
     ) {
         needs.clear();
@@ -129,7 +130,8 @@ impl SlenderStacks {
             let sinking = goal.sinking(edge.pressed(slot, &part), edge.mass) / (MOST_SAG * size);
             // Discs alone do not stand on each other.
             let asks = goal.holds_up && edge.turn > 0.0 && sinking > BORNE * f64::from(goal.base).powi(2);
-            let sinking = if asks && part.rests(bodies, slot as usize) { sinking } else { 0.0 };
+            let asks = asks && part.rests(bodies, slot as usize) && !rigid(slot);
+            let sinking = if asks { sinking } else { 0.0 };
             needs[slot as usize] = [sum, sinking].each(f64::sqrt);
             self.parts[slot as usize].contacts = 0;
             if !movable(below) {

@@ -18,10 +18,11 @@ use super::batches::{Ends, Visit};
 use super::block::{answer, cross, non_negative, relaxed};
 use super::constraint::{Constraint, Normals, Side};
 use super::deep::DEEP;
+use super::direct::{Bias, Pass};
 use super::joint::Stiffness;
 use super::scheme::{ContactSolver, Pairs, Substep};
 use crate::each::Each as _;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Real};
 
 pub use crate::settings::HERTZ_TIMES_SUBSTEP;
 
@@ -174,6 +175,11 @@ impl<L: Lanes> ContactSolver<L> for Soft {
         } else {
             substep.stream.visit(&mut Push::<L, false> { rows, moved, soft, deep, share, per_share });
         }
+        let number = |value: L| value.to_array()[0].to_f64();
+        let [rate, per_sec, push_cap] = [soft.bias_rate, soft.per_sec, soft.push_cap].each(number);
+        let deep = if substep.deep { number(deep) } else { f64::NEG_INFINITY };
+        let bias = Bias { per_sec, rate, push_cap, deep, share: number(share) };
+        substep.direct.solve(substep.stream, rows, Pass::Push(&bias));
     }
 
     fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
@@ -195,6 +201,8 @@ impl<L: Lanes> ContactSolver<L> for Soft {
             } else {
                 substep.stream.visit(&mut Relax::<L, false> { rows, per_sec });
             }
+            let per_sec = 1.0 / substep.context.plan.h_secs;
+            substep.direct.solve(substep.stream, rows, Pass::Relax(per_sec));
         }
     }
 }

@@ -3,6 +3,7 @@
 mod end;
 
 use super::bounce::{self, Bouncing};
+use super::direct::DirectContacts;
 use super::joint::{JointStream, Sources};
 use super::lengths::StepLengths;
 use super::scheme::{Pairs, Substep, solver_of};
@@ -34,6 +35,7 @@ pub struct Solving<L: Lanes> {
     /// The solver works on the pairs: their rows hold gaps and impulses, and constraints are made of them when asked.
     in_rows: bool,
     deep: deep::Apart,
+    direct: DirectContacts,
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
@@ -57,6 +59,7 @@ impl<L: Lanes> Default for Solving<L> {
             behind: false,
             in_rows: false,
             deep: deep::Apart::default(),
+            direct: DirectContacts::default(),
             until_summed: 0,
             flew: false,
         }
@@ -82,7 +85,8 @@ impl<L: Lanes> Solving<L> {
             if !self.flew {
                 self.stream.visit(&mut touching);
             }
-            self.substep_groups.weigh(goal, bodies, ends_of(joints));
+            let rigid = |slot| self.direct.holds(slot);
+            self.substep_groups.weigh(goal, bodies, ends_of(joints), rigid);
         }
         looked
     }
@@ -108,6 +112,7 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) -> bool {
         self.flew = false;
+        self.substep_groups.note_swing(&goal, self.joints.swing());
         let wanted = self.substep_groups.wants(&goal, looked);
         let changed = wanted
             && self.substep_groups.decide(&goal, bodies, manifolds, ends_of(joints), &motion.runs, looked);
@@ -235,9 +240,9 @@ impl<L: Lanes> Solving<L> {
         self.until_summed = 0;
     }
 
-    /// Makes constraints of joints, where they, bodies, the substep or who is `awake` have changed, and finds where
-    /// they are. `awake`: bodies by slot, all if `None`, and how often that has changed.
-    pub fn prepare_joints(
+    /// Makes constraints of joints, where they, bodies, the substep or who is `awake` have changed. `awake`: bodies by slot,
+    /// all if `None`, and how often that has changed.
+    pub fn make_joints(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,
@@ -248,7 +253,20 @@ impl<L: Lanes> Solving<L> {
         let [h_secs, share] = [context.dt_secs / f64::from(substeps), context.plan.impulse_share()];
         self.lengths.begin_joints(h_secs);
         let direct = context.solver == Solver::Soft;
-        self.joints.prepare(&Sources { joints, bodies, h_secs, share, awake: awake.0, direct }, awake.1);
+        let fields = context.plan.fields;
+        let sources = Sources { joints, bodies, fields, h_secs, share, awake: awake.0, direct };
+        self.joints.prepare(&sources, awake.1);
+    }
+
+    /// [`Solving::make_joints`], and finds where they are.
+    pub fn prepare_joints(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        bodies: &Bodies<L::Elem>,
+        joints: &Joints<L::Elem>,
+        awake: (Option<&[bool]>, u64),
+    ) {
+        self.make_joints(context, bodies, joints, awake);
         self.joints.place(bodies);
     }
 
@@ -261,6 +279,10 @@ impl<L: Lanes> Solving<L> {
         motion: &mut Motion<L::Elem>,
     ) -> Warm {
         self.in_rows = context.solver == Solver::Avbd;
+        self.direct.clear();
+        if context.solver == Solver::Soft {
+            self.direct.choose(&mut self.stream, bodies);
+        }
         let same_length = self.lengths.begin(context);
         let may_bounce = context.needs.restitution && pushes(context.solver) && motion.outlook.may_bounce;
         let jointed = pushes(context.solver) && motion.outlook.may_bounce && !self.joints.is_empty();
@@ -303,6 +325,12 @@ impl<L: Lanes> Solving<L> {
     ) -> bool {
         self.take_rows(manifolds, motion);
         motion.load::<L>(context.plan, bodies);
+        if !self.joints.is_empty() {
+            // What joints pull with is what they pulled with in the last substep; their impulses are of this length from here on.
+            let scale = std::mem::replace(&mut self.lengths.joint_scale, 1.0);
+            let per_sec = 1.0 / self.lengths.joint_h_secs;
+            self.joints.warm_start(motion.acceleration.fours_mut(), scale, per_sec);
+        }
         self.bouncing.bounces.resize(self.stream.batches());
         let mut pass = bounce::NoteApproach {
             rows: motion.velocity.fours(),
@@ -348,6 +376,7 @@ impl<L: Lanes> Solving<L> {
         let substep = Substep {
             context,
             stream: &mut self.stream,
+            direct: &mut self.direct,
             joints: with_joints.then_some(&mut self.joints),
             motion,
             first,
@@ -393,6 +422,11 @@ impl<L: Lanes> Solving<L> {
     /// Hands impulses and angles back to the joints.
     pub fn end_joints(&mut self, joints: &mut Joints<L::Elem>) {
         self.joints.end(joints);
+    }
+
+    /// Contacts that were solved directly in the last step.
+    pub fn direct_contacts(&self) -> usize {
+        self.direct.len()
     }
 
     /// Joints that are solved directly.

@@ -14,7 +14,9 @@
 //!   made stiff at once, a column of twelve that had sunk under 2 substeps leapt up with 0.7 m/s under 12. Slender
 //!   stacks are judged by their weight: as bodies come they have all they need at once, before they have sagged.
 //! * Bodies that touch nothing keep the number of the settings, and its bits. Joints carry no load here: an island
-//!   with joints has at least the number of the settings, and all such islands have one number.
+//!   with joints has at least the number of the settings, and all such islands have one number. Only what hangs on rods
+//!   that are solved directly asks for more: their pulls T swing a body across them with ω² = Σ T/(m·L), which
+//!   substeps must follow, ωh ≤ [`FOLLOWED`] (2 is where a string of beads blows up, at Σ/2). It gets them at once: joints do not sag.
 //! * Impulses belong to a substep: where it changes they are scaled.
 //!
 //! Substep groups run one after another; in each, lanes of bodies with another substep group keep their rows. Static and kinematic
@@ -44,6 +46,9 @@ pub(crate) const LOOK_STEPS: u32 = 8;
 /// The same where all islands have the number of the settings, and are only looked over for slender stacks.
 pub(crate) const TOWER_STEPS: u32 = 32;
 
+/// ωh of what swings on rods.
+const FOLLOWED: f64 = 1.0;
+
 /// Who has which number of substeps; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct SubstepGroups<R: Real> {
@@ -69,6 +74,8 @@ pub struct SubstepGroups<R: Real> {
     islands: Vec<Island>,
     /// Substeps of all islands with joints.
     joined: Option<u32>,
+    /// Substeps with which what hangs on rods is followed.
+    swing_needs: f64,
     steps: u32,
 }
 
@@ -87,6 +94,7 @@ impl<R: Real> Default for SubstepGroups<R> {
             sets: Sets::default(),
             islands: Vec::new(),
             joined: None,
+            swing_needs: 0.0,
             steps: 0,
         }
     }
@@ -144,11 +152,17 @@ impl<R: Real> SubstepGroups<R> {
         self.fresh = true;
     }
 
+    /// Notes ωh of what swings fastest on rods, in the substeps that joints have had.
+    pub(super) fn note_swing(&mut self, goal: &Goal, swing: f64) {
+        self.swing_needs = swing * f64::from(self.joined.unwrap_or(goal.base)) / FOLLOWED;
+    }
+
     /// Are islands to be told apart in this step? `looked`: it began with a look.
     pub fn wants(&self, goal: &Goal, looked: bool) -> bool {
         let asked =
             || self.slender_stack_needs.as_flattened().iter().any(|&needs| needs > f64::from(goal.base));
-        self.is_paced() || goal.max_sag.is_some() || (looked && asked())
+        let swings = self.swing_needs > f64::from(goal.base);
+        self.is_paced() || goal.max_sag.is_some() || (looked && asked()) || swings
     }
 
     /// Counts a step that began with a look, or did not.
@@ -170,14 +184,15 @@ impl<R: Real> SubstepGroups<R> {
         self.slender_stacks.reading(goal.touch)
     }
 
-    /// What stacks need, by what has been noted. `joints`: the slots they join.
+    /// What stacks need, by what has been noted. `joints`: the slots they join; `rigid`: slots whose contacts are solved at once.
     pub fn weigh(
         &mut self,
         goal: &Goal,
         bodies: (&Bodies<R>, &[Field<R>]),
         joints: impl Iterator<Item = [u32; 2]>,
+        rigid: impl Fn(u32) -> bool,
     ) {
-        self.slender_stacks.look(goal, bodies, joints, &mut self.slender_stack_needs);
+        self.slender_stacks.look(goal, bodies, (joints, rigid), &mut self.slender_stack_needs);
     }
 
     /// Decides who has which substep group; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the
@@ -230,7 +245,8 @@ impl<R: Real> SubstepGroups<R> {
     fn common_of_joined(&self, goal: &Goal, looked: bool) -> u32 {
         let of = |island: &Island| if looked { aimed(goal, island, self.fresh) } else { island.substeps };
         let joined = self.islands.iter().filter(|island| island.joined);
-        joined.map(of).max().unwrap_or(goal.base).max(goal.base)
+        let asked = joined.map(of).max().unwrap_or(goal.base).max(goal.base);
+        asked.max(goal::following(self.swing_needs, self.joined.unwrap_or(goal.base), looked))
     }
 
     /// Islands, what they carry and what they have had.

@@ -30,6 +30,7 @@ mod engine {
     mod motion_laws;
     mod motion_orders;
     mod motion_skips;
+    mod nets;
     mod oracle_broad;
     mod oracle_lanes;
     mod oracle_narrow;

@@ -278,6 +278,7 @@ fn counted(counts: &Counts) -> Value {
         "islands": counts.islands,
         "substeps": counts.substeps,
         "direct_joints": counts.direct_joints,
+        "direct_contacts": counts.direct_contacts,
         "stiff": counts.stiff,
         "skipped": skipped,
     })

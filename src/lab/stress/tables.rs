@@ -224,7 +224,7 @@ pub fn answers(rows: &[Row]) -> Vec<String> {
     if !directly.is_empty() {
         all.push(format!(
             "A direct solve takes over in {solver} where joints make up trees whose masses are 64 apart, or their ratio \
-             times the number of joints squared is 4096: {}.",
+             times the number of joints squared is 4096 (of nets, 256): {}.",
             directly.join(", ")
         ));
     }

@@ -63,6 +63,38 @@ fn drop(ratio: f64) -> Case {
         .end(1, Column::X, 0.0, 0.02)
 }
 
+/// So many kg fall two metres onto something of a kilogram each that stands on the floor: `at` and half-extents of each, and the
+/// half-extents of what falls, `aside` of the middle. All stays where rigid bodies would.
+fn crush(what: &str, light: &[[f64; 2]], half: [f64; 2], aside: f64, mass: f64) -> Case {
+    let top = light.iter().map(|at| at[1] + 0.5).fold(0.0, f64::max);
+    let mut bodies = vec![floor(50.0)];
+    bodies.extend(light.iter().map(|&at| rectangle([0.5; 2], at).mass(1.0)));
+    bodies.push(rectangle(half, [aside, top + 2.0 + half[1]]).mass(mass));
+    let falls = bodies.len() - 1;
+    let case = Case::new(format!("{mass} kg fall 2 m onto {what} of 1 kg"), bodies, 10.0);
+    let case = light
+        .iter()
+        .enumerate()
+        .fold(case, |case, (k, &[x, y])| case.end(k + 1, Column::X, x, 0.02).end(k + 1, Column::Y, y, 0.02));
+    case.end(falls, Column::Y, top + half[1], 0.02).end(falls, Column::X, aside, 0.02)
+}
+
+/// Two heavy boxes meet with a light one between them, plastically: all go on at the mean, one behind the other.
+fn squeezed(mass: f64) -> Case {
+    let one = |x: f64, mass: f64, v: f64| {
+        rectangle([0.5; 2], [x, 0.0]).mass(mass).surface(0.0, 0.0).moving([v, 0.0], 0.0)
+    };
+    let (speed, first) = (-10.0 * mass / (2.0 * mass + 1.0), -10.0 * mass / (mass + 1.0));
+    // The light one is met after 2.8 m, and goes 0.2 m with what has met it.
+    let x = speed * (5.0 - 2.8 / 10.0 + 0.2 / first);
+    let bodies = vec![one(0.0, mass, 0.0), one(1.2, 1.0, 0.0), one(5.0, mass, -10.0)];
+    let case = Case::new(format!("1 kg between {mass} kg and {mass} kg at 10 m/s, e = 0"), bodies, 5.0);
+    let case = case.weightless().expect(What::Momentum(0), -10.0 * mass, 1e-3 * mass);
+    (0..3).fold(case, |case, body| {
+        case.end(body, Column::Vx, speed, 0.01).end(body, Column::X, x + body as f64, 0.02)
+    })
+}
+
 /// A disc hits a windmill of four rotors welded to a hub, plastically.
 ///
 /// I = ½·M·R² + 4·(m·(w² + h²)/3 + m·8²) about the hub; the impulse is v/(1/m + 1/M + arm²/I).
@@ -107,12 +139,22 @@ fn bounce(height: f64, e: f64) -> Case {
 
 pub(super) fn cases() -> Vec<Case> {
     let bullets = [0.05, 0.5, 5.0].into_iter().flat_map(|mass| [0.0, 0.5, 1.0].map(|e| bullet(mass, e)));
-    let drops = [10.0, 100.0, 1000.0, 10_000.0].map(drop);
+    let drops = [10.0, 100.0, 1000.0, 10_000.0, 100_000.0].map(drop);
+    let stack = [0.5, 1.5, 2.5, 3.5].map(|y| [0.0, y]);
+    let crushed = [100.0, 10_000.0].into_iter().flat_map(|mass| {
+        [
+            crush("four boxes on each other", &stack, [0.5; 2], 0.0, mass),
+            crush("two boxes", &[[-1.5, 0.5], [1.5, 0.5]], [2.5, 0.5], 0.0, mass),
+            crush("a box, aside of its middle,", &stack[..1], [0.5; 2], 0.2, mass),
+        ]
+    });
     let bounces = [(1.0, 1.0), (1.0, 0.5), (20.0, 1.0), (20.0, 0.5)].map(|(height, e)| bounce(height, e));
     bullets
         .chain([1.0, 100.0, 1e5].map(head_on))
         .chain([30.0, 300.0, 1000.0].map(room))
         .chain(drops)
+        .chain(crushed)
+        .chain([100.0, 10_000.0, 100_000.0].map(squeezed))
         .chain([windmill()])
         .chain(bounces)
         .collect()

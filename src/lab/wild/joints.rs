@@ -80,6 +80,79 @@ fn platform(n: usize) -> Case {
         .end(2, Column::Angle, 0.0, 0.01)
 }
 
+/// A truss of `bays` squares of a metre, of rods with a tenth of a kilogram at each node, pinned at both lower ends, with a load in
+/// the middle of its upper chord: rigid. `crossed`: both diagonals of each bay, of which one is more than it takes.
+fn truss(bays: usize, load: f64, crossed: bool) -> Case {
+    let nodes = bays + 1;
+    let middle = nodes + bays / 2;
+    let node = |k: usize| {
+        let at = [(k % nodes) as f64, (k / nodes) as f64];
+        let one = disc(0.1, at);
+        if k == 0 || k == bays { one.fixed() } else { one.mass(if k == middle { load } else { 0.1 }) }
+    };
+    let bodies = (0..2 * nodes).map(node).collect();
+    let mut joints: Vec<_> = (0..nodes).map(|k| rod(k, nodes + k)).collect();
+    for k in 0..bays {
+        joints.extend([rod(k, k + 1), rod(nodes + k, nodes + k + 1), rod(k, nodes + k + 1)]);
+        joints.extend(crossed.then(|| rod(k + 1, nodes + k)));
+    }
+    let with = if crossed { "both diagonals" } else { "a diagonal" };
+    Case::new(format!("{load} kg on a truss of {bays} bays with {with}"), bodies, 10.0)
+        .joined(joints)
+        .end(middle, Column::Y, 1.0, 2e-3 * bays as f64)
+        .end(middle, Column::X, (bays / 2) as f64, 2e-3 * bays as f64)
+}
+
+/// A ring of eight welded boxes hangs from its topmost with a load at its lowest: one body.
+fn welded_ring(load: f64) -> Case {
+    let turn = std::f64::consts::TAU / 8.0;
+    let radius = 0.5 / (0.5 * turn).sin();
+    let at = |k: f64| [-radius * (k * turn).sin(), radius * (k * turn).cos()];
+    let link = |k: usize| {
+        let mut one = rectangle([0.4, 0.1], at(k as f64));
+        one.angle = k as f64 * turn;
+        if k == 0 { one.fixed() } else { one.mass(if k == 4 { load } else { 0.5 }) }
+    };
+    let joints = (0..8).map(|k| weld(k, (k + 1) % 8, at(k as f64 + 0.5))).collect();
+    Case::new(format!("{load} kg on a ring of eight welded boxes"), (0..8).map(link).collect(), 10.0)
+        .joined(joints)
+        .end(4, Column::Y, -radius, 0.02)
+        .end(4, Column::X, 0.0, 0.02)
+}
+
+/// A net of rods, half a metre wide each, hung from its upper row, with a load in the middle of its lowest.
+fn net(side: usize, load: f64) -> Case {
+    let (loaded, deep) = (side * side - 1 - side / 2, 0.5 * (side - 1) as f64);
+    let node = |k: usize| {
+        let one = disc(0.1, [0.5 * (k % side) as f64, -0.5 * (k / side) as f64]);
+        if k < side { one.fixed() } else { one.mass(if k == loaded { load } else { 0.1 }) }
+    };
+    let right = |k: &usize| *k >= side && k % side + 1 < side;
+    let mut joints: Vec<_> = (0..side * side).filter(right).map(|k| rod(k, k + 1)).collect();
+    joints.extend((0..side * (side - 1)).map(|k| rod(k, k + side)));
+    let x = 0.5 * (loaded % side) as f64;
+    Case::new(format!("{load} kg on a net of {side} by {side}"), (0..side * side).map(node).collect(), 10.0)
+        .joined(joints)
+        .end(loaded, Column::Y, -deep, 0.01 * deep)
+        .end(loaded, Column::X, x, 0.01 * deep)
+}
+
+/// A chain of `n` rods with a load at its end, all in a line let go at 0.04 rad: it swings as one, by the load's period.
+fn swung(n: usize, load: f64) -> Case {
+    let angle = 0.04f64;
+    let at = |k: usize| [0.5 * k as f64 * angle.sin(), -0.5 * k as f64 * angle.cos()];
+    let bead = |k: usize| disc(0.1, at(k)).mass(if k == n { load } else { 0.1 });
+    let bodies = std::iter::once(disc(0.1, [0.0, 0.0]).fixed()).chain((1..=n).map(bead)).collect();
+    let long = 0.5 * n as f64;
+    let secs: f64 = 5.0;
+    // 1 + a²/16 of the period.
+    let phase = secs * (G / long).sqrt() / (1.0 + angle * angle / 16.0);
+    Case::new(format!("{load} kg swing on a chain of {n} rods"), bodies, secs)
+        .joined((0..n).map(|k| rod(k, k + 1)).collect())
+        .end(n, Column::X, long * (angle * phase.cos()).sin(), 0.02 * long * angle)
+        .end(n / 2, Column::X, 0.5 * long * (angle * phase.cos()).sin(), 0.02 * long * angle)
+}
+
 /// An arm of half a metre and so many kg lies on the lower limit of its hinge.
 fn limit(mass: f64) -> Case {
     let bodies = vec![disc(0.02, [0.0, 0.0]).fixed(), rectangle([0.5, 0.05], [0.5, 0.0]).mass(mass)];
@@ -149,7 +222,12 @@ pub(super) fn cases() -> Vec<Case> {
     chains
         .into_iter()
         .chain(hinged)
+        .chain([(20, 100.0), (20, 1000.0), (4, 10_000.0)].map(|(n, load)| swung(n, load)))
         .chain([3, 9, 14].map(tower))
+        .chain([(4, 10.0), (10, 100.0), (10, 1000.0)].map(|(bays, load)| truss(bays, load, false)))
+        .chain([(2, 1000.0), (10, 100.0), (10, 1000.0)].map(|(bays, load)| truss(bays, load, true)))
+        .chain([10.0, 100.0].map(welded_ring))
+        .chain([(4, 100.0), (6, 1000.0)].map(|(side, load)| net(side, load)))
         .chain([10, 20].map(platform))
         .chain([1.0, 100.0].map(limit))
         .chain([10.0, 1000.0].map(motor))

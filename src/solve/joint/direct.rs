@@ -27,8 +27,11 @@
 //! ([`FOLLOWED_RAD`]; the fourth power, so that substeps make what it takes from the rest vanish: with the first power
 //! chains of 70:1 lost 5 % in five seconds at any number of substeps).
 //!
-//! Loops are not trees: there, and where a body has more than a few pins, the pass over all joints is all there is.
+//! Nets, which close on themselves, are eliminated in the order that fills in least, and blocks come to be. Where that is
+//! too much, and where a body has more than a few pins, the pass over all joints is all there is.
 
+mod block;
+mod find;
 mod link;
 mod trees;
 
@@ -36,13 +39,12 @@ use super::Stiffness;
 use super::pin::Pin;
 use super::rod::Rod;
 use super::stream::Batches;
-use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::Side;
 use crate::vec2::Vec2;
+use block::{Block, Triple, apply, inverse, inverse_by_pivots, minus, times, transposed};
 use link::{Kind, Link};
-use trees::Trees;
 
 /// A link's inertia that becomes this much greater in a solve slows its spin.
 const BRAKED: f64 = 1.0 / 0.9;
@@ -52,11 +54,6 @@ const RUBBED: f64 = 0.5;
 /// Neighbours that turn apart by as much in a substep lose all of their difference; by half as much, 1/16 of it.
 const FOLLOWED_RAD: f64 = 1.0 / 12.0;
 
-/// A number per row of a joint.
-type Triple = [f64; 3];
-/// 3×3, by rows.
-type Block = [Triple; 3];
-
 /// A joint of a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
@@ -64,16 +61,21 @@ struct Node {
     /// Batch and lane.
     at: [usize; 2],
     slots: [usize; 2],
+    /// What is added to its diagonal, as a share: of nets.
+    shared: f64,
 }
 
 /// A body of a tree.
 #[derive(Clone, Copy, Debug)]
 struct Member {
     side: Side<f64>,
-    /// 1/(kg·m²), its own.
+    /// 1/kg and 1/(kg·m²), its own.
+    own_inv_mass: f64,
     inv_inertia: f64,
     /// Inertia that its pins' pulls add, kg·m².
     borne: f64,
+    /// (ωh)² with which rods swing it across them.
+    swing: f64,
     /// What its pins have turned it with in this substep, N·m·s.
     torque: f64,
     /// 1/(kg·m²) by which it has turned so far.
@@ -98,6 +100,8 @@ impl Member {
 pub(super) struct Direct {
     /// From the leaves to the root, tree after tree.
     nodes: Vec<Node>,
+    /// Where each tree ends.
+    tree_ends: Vec<usize>,
     /// Pins after each that share a body with it: where in `nodes`, and their block.
     later: Vec<Vec<(usize, Block)>>,
     /// Of each pin: its own block, and what is to be taken from its velocity.
@@ -106,9 +110,17 @@ pub(super) struct Direct {
     links: Vec<Link>,
     /// By slot.
     members: Vec<Member>,
+    /// The largest (ωh)² of bodies across their rods at the end of this step and of the last.
+    swings: [f64; 2],
 }
 
 impl Direct {
+    /// ωh of the body that its rods' pulls swing fastest across them: what both of the last steps saw, for a snap asks for
+    /// nothing.
+    pub(super) fn swing(&self) -> f64 {
+        self.swings[0].min(self.swings[1]).sqrt()
+    }
+
     /// Pins that are solved directly.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
@@ -117,48 +129,8 @@ impl Direct {
     pub(super) fn clear(&mut self) {
         self.nodes.clear();
         self.later.clear();
-    }
-
-    /// Finds the trees among the rigid joints in these batches that masses make hard.
-    pub(super) fn look_over<L: Lanes>(
-        &mut self,
-        pins: &Batches<Pin<L>>,
-        rods: &Batches<Rod<L>>,
-        bodies: &Bodies<L::Elem>,
-    ) {
-        let pin = |(at, slots): ([usize; 2], [usize; 2])| {
-            let welded = pins.link(at[0]).row().is_rigid(at[1]);
-            Node { kind: if welded { Kind::Weld } else { Kind::Pin }, at, slots }
-        };
-        let rod = |(at, slots): ([usize; 2], [usize; 2])| {
-            rods.link(at[0]).row().is_rigid(at[1]).then_some(Node { kind: Kind::Rod, at, slots })
-        };
-        let mut ends: Vec<Node> = pins.ends(L::WIDTH).into_iter().map(pin).collect();
-        ends.extend(rods.ends(L::WIDTH).into_iter().filter_map(rod));
-        let moves = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
-        let mut trees = Trees::of(ends.iter().map(|node| node.slots), bodies.len(), moves);
-        self.members.clear();
-        self.members.extend((0..bodies.len()).map(|slot| Member {
-            side: Side { velocity: Vec2::zero(), spin: 0.0, inv_mass: 0.0 },
-            inv_inertia: bodies.inv_inertia[slot].to_f64(),
-            borne: 0.0,
-            torque: 0.0,
-            before: 0.0,
-        }));
-        let inv_mass = |slot: usize| bodies.inv_mass[slot].to_f64();
-        trees.refuse_easy(inv_mass, moves);
-        for depth_first in trees.orders() {
-            let first = self.nodes.len();
-            self.nodes.extend(depth_first.iter().map(|&k| ends[k]));
-            for at in first..self.nodes.len() {
-                let shares = |other: &usize| {
-                    let shared = |slot: &usize| moves(*slot) && self.nodes[*other].slots.contains(slot);
-                    self.nodes[at].slots.iter().any(shared)
-                };
-                let later = (at + 1..self.nodes.len()).filter(shares).map(|other| (other, [[0.0; 3]; 3]));
-                self.later.push(later.collect());
-            }
-        }
+        self.tree_ends.clear();
+        self.swings = [0.0; 2];
     }
 
     /// A step begins: bodies of all trees turn with the inertia that the last impulses, of substeps of `h_secs`, add.
@@ -171,6 +143,7 @@ impl Direct {
         self.look_at(pins, rods);
         self.answer.clear();
         self.answer.resize(self.nodes.len(), [0.0; 3]);
+        self.swings[1] = self.swings[0];
         self.feel_pulls(h_secs, 1.0);
         self.hand_inertia(pins, rods);
     }
@@ -192,12 +165,12 @@ impl Direct {
 
     /// Sums what impulses, those solved for counted in, bodies turn with.
     fn feel_pulls(&mut self, h_secs: f64, share: f64) {
-        let Self { nodes, answer, links, members, .. } = self;
+        let Self { nodes, answer, links, members, swings, .. } = self;
         for slot in nodes.iter().flat_map(|node| node.slots) {
             members[slot].before = members[slot].now();
         }
         for slot in nodes.iter().flat_map(|node| node.slots) {
-            (members[slot].borne, members[slot].torque) = (0.0, 0.0);
+            (members[slot].borne, members[slot].swing, members[slot].torque) = (0.0, 0.0, 0.0);
         }
         let length = |v: Vec2<f64>| v.length_squared().sqrt();
         for ((node, answer), link) in nodes.iter().zip(answer).zip(&*links) {
@@ -206,9 +179,12 @@ impl Direct {
             for (end, sign) in [(0, -1.0), (1, 1.0)] {
                 let (arm, body) = (link.arm(end), &mut members[node.slots[end]]);
                 body.borne += h_secs * (pull * length(arm));
+                body.swing += link.per_length() * (h_secs * pull) * body.own_inv_mass;
                 body.torque += sign * share * arm.cross(given);
             }
         }
+        let fastest = nodes.iter().flat_map(|node| node.slots).map(|slot| members[slot].swing);
+        swings[0] = fastest.fold(0.0, f64::max);
         for (node, link) in nodes.iter().zip(links) {
             link.set_inv_inertia(node.slots.each(|slot| members[slot].now()));
         }
@@ -333,6 +309,9 @@ impl Direct {
             for row in link.rows()..3 {
                 block[row][row] = 1.0;
             }
+            for row in 0..3 {
+                block[row][row] *= 1.0 + node.shared;
+            }
             own.push((block, link.wanted(&a, &b, how)));
             for (other, block) in &mut later[at] {
                 *block = coupling(link, node.slots, &links[*other], nodes[*other].slots, masses);
@@ -345,7 +324,7 @@ impl Direct {
         let Self { nodes, later, own, answer, .. } = self;
         for at in 0..nodes.len() {
             let (block, wanted) = own[at];
-            let inverse = inverse(block);
+            let inverse = if nodes[at].shared > 0.0 { inverse_by_pivots(block) } else { inverse(block) };
             let (_, rest) = later.split_at_mut(at);
             let Some((mine, rest)) = rest.split_first_mut() else { break };
             for (k, &(j, a_ij)) in mine.iter().enumerate() {
@@ -407,34 +386,4 @@ fn coupling(
 fn side<R: Real>(row: [R; 4]) -> Side<f64> {
     let [x, y, spin, inv_mass] = row.each(Real::to_f64);
     Side { velocity: Vec2::new(x, y), spin, inv_mass }
-}
-
-fn transposed(a: Block) -> Block {
-    crate::each::indexed(|i| crate::each::indexed(|j| a[j][i]))
-}
-
-fn times(a: Block, b: Block) -> Block {
-    let at = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-    crate::each::indexed(|i| crate::each::indexed(|j| at(i, j)))
-}
-
-fn minus(a: Block, b: Block) -> Block {
-    crate::each::indexed(|i| crate::each::indexed(|j| a[i][j] - b[i][j]))
-}
-
-fn apply(a: Block, v: Triple) -> Triple {
-    crate::each::indexed(|i| a[i][0] * v[0] + a[i][1] * v[1] + a[i][2] * v[2])
-}
-
-/// Of a symmetric matrix, by its adjoint; zeros where nothing yields.
-fn inverse(a: Block) -> Block {
-    let minor = |i: usize, j: usize| {
-        let ([i, k], [j, l]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
-        a[i][j] * a[k][l] - a[i][l] * a[k][j]
-    };
-    let determinant = a[0][0] * minor(0, 0) + a[0][1] * minor(0, 1) + a[0][2] * minor(0, 2);
-    if determinant <= 0.0 {
-        return [[0.0; 3]; 3];
-    }
-    crate::each::indexed(|i| crate::each::indexed(|j| minor(j, i) / determinant))
 }

@@ -94,6 +94,12 @@ impl<L: Lanes> Rod<L> {
         }
     }
 
+    /// How far from the centroid of A (0) or B (1) a lane holds, metres.
+    pub(super) fn reach(&self, end: usize, lane: usize) -> f64 {
+        let [x, y] = [self.anchors[end].x, self.anchors[end].y].each(|along| along.to_array()[lane].to_f64());
+        x.hypot(y)
+    }
+
     /// From the centroid of A (0) or B (1), metres.
     pub(super) fn arm(&self, end: usize) -> Vec2<L> {
         self.arms[end]

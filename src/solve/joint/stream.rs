@@ -9,6 +9,7 @@ use super::row::Numbers;
 use super::{Linkage, Pose, Stiffness, Swing, lanes};
 use crate::body::{Bodies, BodyId, BodyKind};
 use crate::each::Each as _;
+use crate::force::Field;
 use crate::joint::{Held, Joint, JointKind, Joints};
 use crate::lanes::{Lanes, Real};
 use crate::solve::color::COLORS;
@@ -122,6 +123,8 @@ pub struct Sources<'a, R: Real> {
     pub joints: &'a Joints<R>,
     /// What they join.
     pub bodies: &'a Bodies<R>,
+    /// What pulls these.
+    pub fields: &'a [Field<R>],
     /// Seconds per substep.
     pub h_secs: f64,
     /// What an impulse changes a moving velocity by, over what it changes the velocity by.
@@ -209,7 +212,7 @@ impl<L: Lanes> JointStream<L> {
     /// Colours and constraints, where their sources are others than those they were made from; `groupings`: how often
     /// who is awake has changed.
     pub fn prepare(&mut self, sources: &Sources<'_, L::Elem>, groupings: u64) {
-        let Sources { joints, bodies, h_secs, share, awake, direct } = *sources;
+        let Sources { joints, bodies, fields, h_secs, share, awake, direct } = *sources;
         let (of_joints, of_bodies) = (joints.revision(), bodies.revision());
         let from = MadeFrom { joints: of_joints, bodies: of_bodies, h_secs, share, groupings, direct };
         let last = std::mem::replace(&mut self.made_from, from);
@@ -258,6 +261,7 @@ impl<L: Lanes> JointStream<L> {
         self.direct.clear();
         if direct {
             self.direct.look_over(&self.pins, &self.rods, bodies);
+            self.direct.foresee_swing(&self.rods, (bodies, fields), h_secs);
         }
     }
 
@@ -331,6 +335,13 @@ impl<L: Lanes> JointStream<L> {
         self.solve_directly(rows, None);
     }
 
+    /// Bodies were displaced as a step ended: joints are seen from where they are now.
+    pub(in crate::solve) fn follow(&mut self, displaced: &[[L::Elem; 4]]) {
+        each!(self, |c, ends| {
+            c.follow(&L::gather_fours(displaced, ends.a), &L::gather_fours(displaced, ends.b));
+        });
+    }
+
     /// Notes impulses, to be taken back by [`JointStream::restore`].
     pub(in crate::solve) fn note(&mut self) {
         self.before.0.clone_from(&self.pins.links);
@@ -361,6 +372,11 @@ impl<L: Lanes> JointStream<L> {
                 joints.hold_at(place, held);
             }
         });
+    }
+
+    /// ωh of the body that pulls of directly solved rods swing fastest across them, as of the last step.
+    pub fn swing(&self) -> f64 {
+        self.direct.swing()
     }
 
     /// Joints that are solved directly; see `direct.rs`.

@@ -22,11 +22,8 @@ impl<L: Lanes> Solving<L> {
             self.substep_groups.count() > 1 || matches!(context.solver, Solver::Xpbd | Solver::Avbd);
         if self.bouncing.any {
             self.take_rows(manifolds, motion);
-            if self.bounce(context, motion, settled) {
-                self.bounce_with_joints(context, motion, settled);
-                if self.in_rows {
-                    self.stream.write_rows(manifolds, None);
-                }
+            if self.bounce(context, motion, settled) && self.in_rows {
+                self.stream.write_rows(manifolds, None);
             }
         }
         if self.deep.steps > 0 && context.solver == Solver::Soft {
@@ -36,48 +33,79 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Gives bounces their impulses and displacements; says whether there were any.
+    ///
+    /// What joints hold bounces as they let it: they take from a bounce what would part them, and it is given again, first of its
+    /// displacements and then of its velocities, seen from where joints are by then. An impact is no load for them to go on with.
     fn bounce(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
         motion: &mut Motion<L::Elem>,
         settled: bool,
     ) -> bool {
-        let Self { bouncing: Bouncing { displaced, bounces, .. }, stream, .. } = self;
-        let (rows, moved) = (motion.velocity.fours_mut(), motion.moved.fours());
         // Left as zeros by what was displaced before.
-        displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
-        let before = (!settled).then_some(moved);
-        let touch = L::lit(context.needs.touch());
-        let mut pass = bounce::Bounce { rows, displaced, touch, moved: before, bounces, any: false };
-        stream.visit(&mut pass);
-        if !pass.any {
+        self.bouncing.displaced.resize(motion.velocity.fours().len(), [L::Elem::ZERO; 4]);
+        if !self.bounce_once(context, motion, settled) {
             return false;
         }
-        let entered = bounce::by_bounces::<L>;
-        stream.visit(&mut MoveOut { rows, displaced, moved: before, entered, any: false });
+        if !self.joints.is_empty() {
+            self.displace_with_joints(context, motion, settled);
+            let [h_secs, share] = [context.plan.h_secs, context.plan.impulse_share()];
+            self.joints.note();
+            for _ in 0..bounce::ROUNDS {
+                self.joints.relax_velocities(motion.velocity.fours_mut(), &Stiffness::soft(h_secs, share));
+                self.bounce_once(context, motion, settled);
+            }
+            self.joints.relax_velocities(motion.velocity.fours_mut(), &Stiffness::soft(h_secs, share));
+            self.joints.restore();
+        }
+        let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
+        let (rows, moved) = (motion.velocity.fours(), (!settled).then_some(motion.moved.fours()));
+        stream.visit(&mut MoveOut { rows, displaced, moved, entered: bounce::by_bounces::<L>, any: false });
         self.displace(motion, settled);
         true
     }
 
-    /// What joints hold bounces as they let it: joints take from a bounce what would part them, and it is given again. An
-    /// impact is no load for joints to go on with.
-    fn bounce_with_joints(
+    /// One round over the contacts that bounce; says whether there were any.
+    fn bounce_once(
+        &mut self,
+        context: &SolverContext<'_, L::Elem>,
+        motion: &mut Motion<L::Elem>,
+        settled: bool,
+    ) -> bool {
+        let Self { bouncing: Bouncing { displaced, bounces, .. }, stream, .. } = self;
+        let (rows, moved) = (motion.velocity.fours_mut(), (!settled).then_some(motion.moved.fours()));
+        let touch = L::lit(context.needs.touch());
+        let mut pass = bounce::Bounce { rows, displaced, touch, moved, bounces, any: false };
+        stream.visit(&mut pass);
+        pass.any
+    }
+
+    /// Joints take from what bounces displace what would part them: a displacement is to its push what a velocity is to its
+    /// impulse, over a second. They are seen from half-way, for a chord is square to the radius that halves it.
+    fn displace_with_joints(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
         motion: &mut Motion<L::Elem>,
         settled: bool,
     ) {
-        if self.bouncing.rounds == 0 {
-            return;
-        }
-        let how = Stiffness::soft(context.plan.h_secs, context.plan.impulse_share());
+        let over_a_second = Stiffness::soft(1.0, context.plan.impulse_share());
         self.joints.note();
-        for _ in 0..self.bouncing.rounds {
-            self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
-            self.bounce(context, motion, settled);
+        let half = L::Elem::from_f64(0.5);
+        for (displaced, row) in self.bouncing.displaced.iter_mut().zip(motion.velocity.fours()) {
+            *displaced = displaced.each(|way| way * half);
+            displaced[3] = row[3];
         }
-        self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
+        self.joints.follow(&self.bouncing.displaced);
+        for displaced in &mut self.bouncing.displaced {
+            displaced.iter_mut().take(3).for_each(|way| *way = *way + *way);
+        }
+        for _ in 0..bounce::ROUNDS {
+            self.joints.relax_velocities(&mut self.bouncing.displaced, &over_a_second);
+            self.bounce_once(context, motion, settled);
+        }
+        self.joints.relax_velocities(&mut self.bouncing.displaced, &over_a_second);
         self.joints.restore();
+        self.joints.follow(&self.bouncing.displaced);
     }
 
     /// Moves what is deep in something else out of it; says whether anything is.

@@ -81,6 +81,15 @@ fn below(substeps: u32) -> u32 {
     RUNGS.into_iter().rev().find(|&n| n < substeps).unwrap_or(RUNGS[0])
 }
 
+/// What joints should have that have `held` and need so many: more at once, fewer rung by rung.
+pub(super) fn following(needs: f64, held: u32, looked: bool) -> u32 {
+    if needs > f64::from(held) {
+        return RUNGS.into_iter().find(|&n| f64::from(n) >= needs).unwrap_or(RUNGS[RUNGS.len() - 1]);
+    }
+    let lower = below(held);
+    if !looked || needs * SPARE > f64::from(lower) { held } else { lower }
+}
+
 /// What an island is known to be.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Island {

@@ -109,3 +109,48 @@ fn impacts_within_a_step_go_on_in_their_order() {
     }
     assert!(ends.iter().all(|end| ends.iter().all(|other| end.0 != other.0 || end == other)), "{ends:?}");
 }
+
+/// What is heavy falls onto what is light, whatever the ratio, their shapes and how many there are: they are solved at once, and
+/// nothing ends in anything else.
+#[test]
+fn what_is_heavy_does_not_crush_what_is_light() {
+    let shapes = [ShapeSpec::Box([0.5; 2]), ShapeSpec::Circle(0.5)];
+    for (shape, ratio, light) in shapes.iter().flat_map(|shape| {
+        [100.0, 1e3, 1e4, 1e5].into_iter().flat_map(move |ratio| [1, 3].map(|light| (shape, ratio, light)))
+    }) {
+        // In a shaft, so that discs stay on each other.
+        let wall = |x: f64| BodySpec::new(ShapeSpec::Box([0.5, 5.0]), [x, 5.0]).fixed().surface(0.0, 0.0);
+        let one = |y: f64| BodySpec::new(shape.clone(), [0.0, y]);
+        let floor = BodySpec::new(ShapeSpec::Box([5.0, 0.5]), [0.0, -0.5]).fixed();
+        let mut bodies = vec![floor, wall(-1.01), wall(1.01)];
+        bodies.extend((0..light).map(|k| one(0.5 + f64::from(k)).mass(1.0)));
+        bodies.push(one(f64::from(light) + 2.5).mass(ratio));
+        let count = light as usize + 1;
+        let world = advanced(bodies, Forces::gravity(), Settings::default(), 300);
+        for (k, state) in world.states().iter().skip(3).enumerate() {
+            let y = state.position[1];
+            assert!((y - 0.5 - k as f64).abs() < 2e-3, "{shape:?}, {ratio}:1 on {light}: {k} at {y}");
+        }
+        assert!(world.counts().direct_contacts >= count, "{:?}", world.counts());
+    }
+}
+
+/// Bodies that meet in a line, the light one between, come out with the momenta of plastic impacts, and what they had together.
+#[test]
+fn light_bodies_between_heavy_ones_leave_their_momentum_alone() {
+    for (left, light, right) in [(1e2, 1.0, 1e2), (1e4, 1.0, 1e4), (1e5, 1.0, 1e3), (1.0, 1e-3, 10.0)] {
+        let one = |x: f64, mass: f64, v: f64| {
+            let body = BodySpec::new(ShapeSpec::Box([0.5; 2]), [x, 0.0]).mass(mass);
+            body.surface(0.0, 0.0).moving([v, 0.0], 0.0)
+        };
+        let bodies = vec![one(-3.0, left, 6.0), one(0.0, light, 0.0), one(3.0, right, -6.0)];
+        let world = advanced(bodies, Forces::default(), Settings::default(), 120);
+        let mean = 6.0 * (left - right) / (left + light + right);
+        for state in world.states() {
+            assert!(
+                (state.velocity[0] - mean).abs() < 1e-3,
+                "{left}, {light}, {right}: {state:?}, not {mean}"
+            );
+        }
+    }
+}

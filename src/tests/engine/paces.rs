@@ -218,7 +218,9 @@ fn what_presses_hard_gets_the_substeps_that_hold_it() {
             "{known} m, and in truth {overlap} m"
         );
         println!("{size} m, {gravity} m/s²: {overlap:.1e} m with {used}, risen {highest:.1e} m");
-        assert!(overlap <= 1.1e-3 * size && used > 4, "{size} m, {gravity} m/s²: {overlap} m with {used}");
+        // Or are solved at once, where masses are far apart.
+        let cared_for = used > 4 || world.counts().direct_contacts > 0;
+        assert!(overlap <= 1.1e-3 * size && cared_for, "{size} m, {gravity} m/s²: {overlap} m with {used}");
         assert!(highest <= 1e-3 * size, "{size} m, {gravity} m/s²: thrown up by {highest} m");
     };
     let on_each_other = |size: f64, masses: &[f64]| {

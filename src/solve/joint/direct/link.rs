@@ -1,6 +1,6 @@
 //! A joint as the direct solve sees it: up to three rows, each with what it takes of both bodies.
 
-use super::{Block, Triple};
+use super::block::{Block, Triple};
 use crate::solve::constraint::Side;
 use crate::solve::joint::Stiffness;
 use crate::solve::joint::pin::Pin;
@@ -87,6 +87,14 @@ impl Link {
         match self {
             Self::Pin(..) => Vec2::new(rows[0], rows[1]),
             Self::Rod(rod, ..) => rod.axis() * rows[0],
+        }
+    }
+
+    /// 1/m, of a rod's length: what it pulls with over that is how stiff it is across; pins turn instead.
+    pub(super) fn per_length(&self) -> f64 {
+        match self {
+            Self::Pin(..) => 0.0,
+            Self::Rod(_, rest, _) => 1.0 / rest.max(f64::MIN_POSITIVE),
         }
     }
 

@@ -1,4 +1,6 @@
-//! Which pins make up trees whose masses are too far apart for visits, and in what order these are eliminated.
+//! Which joints make up trees or nets whose masses are too far apart for visits, and in what order these are eliminated.
+
+use std::collections::BTreeSet;
 
 use crate::partition::Sets;
 
@@ -9,8 +11,20 @@ const HARD_RATIO: f64 = 64.0;
 const HARD_LOAD: f64 = 4096.0;
 /// Chains of equal links are left to visits, however long.
 const HARD_FROM: f64 = 1.5;
+/// The same of nets, where an error goes round.
+const HARD_NET: f64 = 256.0;
 /// Pins on one body that a tree is solved with: blocks grow with their square.
 const MOST_PINS: usize = 8;
+/// Joints of a net, and blocks beside the diagonal for each of them: what an elimination fills in.
+const MOST_JOINTS: usize = 512;
+const MOST_BLOCKS: usize = 16;
+
+/// The joints of a tree or net, in the order of their elimination.
+pub(super) struct Order {
+    pub joints: Vec<usize>,
+    /// It closes on itself: eliminating a joint makes neighbours of its neighbours, and rows may depend on each other.
+    pub looped: bool,
+}
 
 /// Pins by the bodies that they hang together by.
 pub(super) struct Trees {
@@ -19,34 +33,58 @@ pub(super) struct Trees {
     on: Vec<Vec<usize>>,
     /// Whom pins join.
     sets: Sets,
-    /// By the lowest slot of a set: a tree, and a hard one.
+    /// By the lowest slot of a set: a hard one.
     wanted: Vec<bool>,
+    /// Likewise: not a tree.
+    looped: Vec<bool>,
 }
 
 impl Trees {
+    /// Of joints between these slots, of which some are welds.
     pub(super) fn of(
-        ends: impl Iterator<Item = [usize; 2]>,
+        ends: impl Iterator<Item = ([usize; 2], bool)>,
         slots: usize,
         moves: impl Fn(usize) -> bool,
     ) -> Self {
-        let ends: Vec<_> = ends.collect();
+        let (ends, welds): (Vec<_>, Vec<_>) = ends.unzip();
         let mut on = vec![Vec::new(); slots];
         let mut sets = Sets::default();
         sets.part(slots, std::slice::from_ref(&(0..slots)));
-        let mut wanted = vec![true; slots];
+        let mut looped = vec![false; slots];
         for (k, &[a, b]) in ends.iter().enumerate() {
             for slot in [a, b].into_iter().filter(|&slot| moves(slot)) {
                 on[slot].push(k);
             }
             if moves(a) && moves(b) {
                 match sets.join([a as u32, b as u32]) {
-                    Some([low, high]) => wanted[low as usize] &= wanted[high as usize],
-                    // They hang together already: a loop, no tree.
-                    None => wanted[sets.of(a as u32) as usize] = false,
+                    Some([low, high]) => looped[low as usize] |= looped[high as usize],
+                    // They hang together already.
+                    None => looped[sets.of(a as u32) as usize] = true,
                 }
             }
         }
-        Self { ends, on, sets, wanted }
+        // What hangs from the ground by two joints closes on itself through it; of pins and rods alone it has rows to spare.
+        let mut held = vec![(0, false); slots];
+        for (&[a, b], weld) in ends.iter().zip(welds) {
+            let Some(end) = [a, b].into_iter().find(|&slot| moves(slot)) else { continue };
+            let (anchors, has_weld) = &mut held[sets.of(end as u32) as usize];
+            *anchors += u32::from(!moves(a) || !moves(b));
+            *has_weld |= weld;
+        }
+        for (looped, (anchors, has_weld)) in looped.iter_mut().zip(held) {
+            *looped |= anchors > 2 || (anchors == 2 && has_weld);
+        }
+        Self { ends, on, sets, wanted: vec![true; slots], looped }
+    }
+
+    /// Leaves nets alone that have one of these joints.
+    pub(super) fn refuse_nets(&mut self, joints: impl Iterator<Item = usize>) {
+        for joint in joints {
+            for end in self.ends[joint] {
+                let set = self.sets.of(end as u32) as usize;
+                self.wanted[set] &= !self.looped[set];
+            }
+        }
     }
 
     /// Leaves those alone whose masses are near each other.
@@ -61,15 +99,16 @@ impl Trees {
             // As many as bodies, or one more or less.
             pins[tree] += 1.0;
         }
-        for ((wanted, [least, most]), pins) in self.wanted.iter_mut().zip(spans).zip(pins) {
-            let ratio = most / least;
-            let hard = ratio >= HARD_RATIO || (ratio >= HARD_FROM && ratio * pins * pins >= HARD_LOAD);
+        let sets = self.wanted.iter_mut().zip(&self.looped).zip(spans.iter().zip(pins));
+        for ((wanted, &looped), (&[least, most], pins)) in sets {
+            let (ratio, load) = (most / least, if looped { HARD_NET } else { HARD_LOAD });
+            let hard = ratio >= HARD_RATIO || (ratio >= HARD_FROM && ratio * pins * pins >= load);
             *wanted &= least.is_finite() && hard;
         }
     }
 
-    /// The pins of each wanted tree, from the leaves to the root.
-    pub(super) fn orders(&mut self) -> Vec<Vec<usize>> {
+    /// The joints of each wanted tree, from the leaves to the root; of a net, those with the fewest neighbours first.
+    pub(super) fn orders(&mut self) -> Vec<Order> {
         let mut seen = vec![false; self.ends.len()];
         let mut orders = Vec::new();
         for slot in 0..self.on.len() {
@@ -91,8 +130,42 @@ impl Trees {
                 }
             }
             order.reverse();
-            orders.push(order);
+            let looped = self.looped[slot];
+            let joints = if looped { self.least_filling(&order) } else { Some(order) };
+            orders.extend(joints.map(|joints| Order { joints, looped }));
         }
         orders
+    }
+
+    /// An order in which eliminating fills in little: the joint with the fewest neighbours next. `None` where that is too much.
+    fn least_filling(&self, joints: &[usize]) -> Option<Vec<usize>> {
+        if joints.len() > MOST_JOINTS {
+            return None;
+        }
+        let mut left: Vec<usize> = joints.to_vec();
+        left.sort_unstable();
+        let beside = |joint: usize| -> BTreeSet<usize> {
+            let on = self.ends[joint].into_iter().flat_map(|slot| &self.on[slot]).copied();
+            on.filter(|&other| other != joint).collect()
+        };
+        let mut neighbours: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); self.ends.len()];
+        for &joint in &left {
+            neighbours[joint] = beside(joint);
+        }
+        let (mut order, mut blocks) = (Vec::new(), 0);
+        while let Some(at) = (0..left.len()).min_by_key(|&at| (neighbours[left[at]].len(), left[at])) {
+            let joint = left.swap_remove(at);
+            let around = std::mem::take(&mut neighbours[joint]);
+            blocks += around.len();
+            if blocks > MOST_BLOCKS * joints.len() {
+                return None;
+            }
+            for &other in &around {
+                neighbours[other].extend(around.iter().copied().filter(|&third| third != other));
+                neighbours[other].remove(&joint);
+            }
+            order.push(joint);
+        }
+        Some(order)
     }
 }
