@@ -5,8 +5,8 @@
 //! Each goes its way in a straight line at even speed and spin until it meets another body: there both get the impulse of
 //! their restitution and friction, and go on with what is left of the step, where either may meet again ([`MEETINGS`]).
 //! What happens within a step happens in the order of its instants; ties go by slots.
-//! What joints hold stops where it meets something and keeps its velocity, as does what it meets: what they part with the next
-//! step's contact finds, which knows the joints. Bounced as if it were free, a ball on a rod lost a twelfth of its energy.
+//! A jointed body stops where it meets something and keeps its velocity, and so does what it hits: the next step solves the impact
+//! together with the joints. Bounced as if it were free, a ball on a rod lost a twelfth of its energy.
 //!
 //! Whom it may meet: every static and kinematic body, and of dynamic ones those it has a candidate pair with, which reach as
 //! far as both move; none of those under a solver that hears of overlaps alone (`impulse`), whose pairs do not. Gravity is reckoned in: a body that meets something at the share t of a step has by then the velocity
@@ -380,7 +380,10 @@ impl<R: Real> Continuous<R> {
         own.velocity -= gained;
         let placed = self.ways[way].sweep.at(0.0);
         match with {
-            Other::Wall(_) if self.jointed[self.ways[way].slot] => self.stay(way),
+            Other::Wall(_) if self.jointed[self.ways[way].slot] => {
+                self.stay(way);
+                self.expect_anew(bodies, around, [way, way]);
+            }
             Other::Way(other) if [way, other].into_iter().any(|way| self.jointed[self.ways[way].slot]) => {
                 self.go_to(other, at);
                 for way in [way, other] {

@@ -43,7 +43,7 @@
 //! | joints | pose; joints where they have changed | arms, gaps and angles; batches |
 //! | begin | constraints, velocity | warm start per body, approaches that will bounce |
 //! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement; of bodies whose fields it cannot follow, by what those do exactly |
-//! | per substep: solve | constraints of joints (hard trees at once), then of contacts, rows | rows, impulses |
+//! | per substep: solve | constraints of joints (hard trees and nets at once), then of contacts (those of masses far apart at once), rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
 //! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
 //! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who moved, who is fast |
@@ -76,7 +76,7 @@
 //! # Levers
 //! Instructions per step of 150 settled polygons (270 contacts), `soft`, 4 substeps, by callgrind, of a pile that is left
 //! alone: steps 600 to 620 of `lamina run polygons/150` (181,414 at commit 61f47dc, 181,737 in steps 1800 to 1820). The
-//! gate's scene of the same name counts 281,045 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
+//! gate's scene of the same name counts 281,824 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
 //! again, and finds and prepares its contacts in every step.
 //!
 //! | lever | state |

@@ -1,17 +1,20 @@
-//! While some bodies sleep: pairs of what is awake, with each other and with what is not.
+//! While some bodies sleep, or many are static: pairs of what is awake, with each other and with what is not. Statics count as
+//! asleep throughout.
 //!
-//! What cannot move stays sorted along x from one list to the next; a body that is awake meets those whose centre is
-//! no further along x than both radii, the widest of them for all. Ends lie 8ε of that further out: fl(x − e) > x' means
+//! What cannot move stays sorted along the axis of its wider spread from one list to the next (coordinates are exchanged where that
+//! is y, as in the sweep); a body that is awake meets those whose centre is no further along it than both radii, the widest of them for all. Ends lie 8ε of that further out: fl(x − e) > x' means
 //! x − x' > e exactly, as rounding is monotone, and then [`super::meet`] says no after its own rounding, at every width.
 
+use super::sweep::{exchanged, mean_distance};
 use super::{Circles, ordered};
 use crate::body::Bodies;
+use crate::column::Column;
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 
 /// What is awake, and what is not.
 #[derive(Clone, Debug)]
 pub(super) struct Frozen<R: Real> {
-    /// Does anything sleep? If not, nothing of this is looked at.
+    /// Is anything kept here? If not, nothing of this is looked at.
     pub(super) active: bool,
     /// Per slot.
     is_awake: Vec<bool>,
@@ -19,8 +22,9 @@ pub(super) struct Frozen<R: Real> {
     plain: Vec<u32>,
     /// Slots of all bodies that are awake, ascending.
     awake: Vec<u32>,
-    /// Plain bodies that are not awake, by x; radii without reach.
+    /// Plain bodies that are not awake, sorted; radii without reach.
     circles: Circles<R>,
+    along_y: bool,
     widest: R,
     order: Vec<u32>,
 }
@@ -33,6 +37,7 @@ impl<R: Real> Default for Frozen<R> {
             plain: Vec::new(),
             awake: Vec::new(),
             circles: Circles::new(),
+            along_y: false,
             widest: R::ZERO,
             order: Vec::new(),
         }
@@ -53,7 +58,11 @@ impl<R: Real> Frozen<R> {
             let list = if awake[slot as usize] { &mut self.plain } else { &mut self.order };
             list.push(slot);
         }
-        let key = |slot: u32| (bodies.x[slot as usize], slot);
+        let spread =
+            |column: &Column<R>| mean_distance(self.order.iter().map(|&slot| column[slot as usize].to_f64()));
+        self.along_y = spread(&bodies.y) > spread(&bodies.x);
+        let along = if self.along_y { &bodies.y } else { &bodies.x };
+        let key = |slot: u32| (along[slot as usize], slot);
         let by_x = |a: &u32, b: &u32| key(*a).partial_cmp(&key(*b)).unwrap_or(std::cmp::Ordering::Equal);
         self.order.sort_unstable_by(by_x);
         self.circles.resize(self.order.len());
@@ -61,13 +70,18 @@ impl<R: Real> Frozen<R> {
         for (at, &slot) in self.order.iter().enumerate() {
             let k = slot as usize;
             let radius = bodies.radius[k];
-            self.circles.set(at, (bodies.x[k], bodies.y[k], radius, slot));
+            let [x, y] = exchanged(self.along_y, [bodies.x[k], bodies.y[k]]);
+            self.circles.set(at, (x, y, radius, slot));
             if self.widest < radius {
                 self.widest = radius;
             }
         }
     }
 
+    /// Slot of some plain body that is not awake.
+    pub(super) fn any_slot(&self) -> Option<u32> {
+        self.order.first().copied()
+    }
     /// Slots of plain bodies that are awake, ascending.
     pub(super) fn plain_slots(&self) -> &[u32] {
         &self.plain
@@ -87,6 +101,7 @@ impl<R: Real> Frozen<R> {
         let xs = self.circles.x.as_slice();
         for k in 0..awake.len() {
             let (x, y, r, slot) = awake.get(k);
+            let [x, y] = exchanged(self.along_y, [x, y]);
             let r = r + reach;
             let end = (r + self.widest) * (R::ONE + R::from_f64(8.0) * R::EPSILON);
             let (lx, ly, lr) = (L::splat(x), L::splat(y), L::splat(r));

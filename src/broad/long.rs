@@ -2,7 +2,7 @@
 //!
 //! A huge one is tested against all bodies in lanes: bounding circles first, then the other's circle against
 //! the body's oriented box, clamped in the box's frame. Others are found by their circles like plain bodies, and their pairs
-//! held against their boxes after: each against all, 1500 planks of aspect 4 took 5.6 times as long as such of 2.9.
+//! held against their boxes after. (Lost: each against all; 1500 planks of aspect 4 took 5.6 times as long as such of 2.9.)
 
 use super::{meet, ordered};
 use crate::body::{Bodies, BodyKind, Form};

@@ -19,8 +19,8 @@
 //! Huge bodies never enter cells or the sweep: each is tested against all others in lanes. Long ones are found by their circles.
 //!
 //! While some bodies sleep ([`BroadPhase::freeze`]), only pairs with one that is awake are found, among these by the
-//! method for so many. Where there are many static bodies ([`MANY_STATICS`]) they are always left out so: pairs of two are
-//! never looked at.
+//! method for so many. Where there are many static bodies ([`MANY_STATICS`]) they always count as asleep, and pairs of two are
+//! not looked at, but for those with a huge one.
 
 mod brute;
 mod frozen;
@@ -125,6 +125,8 @@ pub struct BroadPhase<R: Real> {
     frozen: frozen::Frozen<R>,
     /// Some bodies sleep.
     some_sleep: bool,
+    /// Per slot, while statics are being frozen.
+    awake: Vec<bool>,
     kept: BroadCounts,
     /// Lists found so far.
     lists: u64,
@@ -146,6 +148,7 @@ impl<R: Real> Default for BroadPhase<R> {
             keep: keep::Keep::default(),
             frozen: frozen::Frozen::default(),
             some_sleep: false,
+            awake: Vec::new(),
             kept: BroadCounts::default(),
             lists: 0,
             revision: None,
@@ -190,6 +193,11 @@ impl<R: Real> BroadPhase<R> {
         if median.is_finite() { median } else { 0.0 }
     }
 
+    /// Bodies may have changed in any way: they are looked over before the next list.
+    pub fn forget(&mut self) {
+        self.revision = None;
+    }
+
     /// Leaves these pairs out from now on: slots a < b, ordered by a, then b. The next list is found afresh.
     pub fn keep_apart(&mut self, pairs: Vec<[u32; 2]>) {
         self.apart = pairs;
@@ -219,9 +227,10 @@ impl<R: Real> BroadPhase<R> {
         let statics = self.long.plain_slots().iter().filter(|&&slot| is_static(slot)).count();
         self.frozen.active = false;
         if statics >= MANY_STATICS {
-            let stirs = |slot: u32| !is_static(slot) || self.long.is_huge(slot);
-            let awake: Vec<bool> = (0..bodies.len() as u32).map(stirs).collect();
-            self.frozen.sort(bodies, self.long.plain_slots(), &awake);
+            let counts_as_awake = |slot: u32| !is_static(slot) || self.long.is_huge(slot);
+            self.awake.clear();
+            self.awake.extend((0..bodies.len() as u32).map(counts_as_awake));
+            self.frozen.sort(bodies, self.long.plain_slots(), &self.awake);
         }
     }
 
@@ -236,16 +245,17 @@ impl<R: Real> BroadPhase<R> {
         keep: bool,
     ) -> BroadCounts {
         self.look_over(bodies);
-        let some_sleep = self.frozen.active;
-        let searched = if some_sleep { self.frozen.awake_slots().len() } else { bodies.live() };
+        let frozen = self.frozen.active;
+        let searched = if frozen { self.frozen.awake_slots().len() } else { bodies.live() };
         let method = Self::resolve(method, searched);
         let keep = keep && method != Broad::Off;
-        let along = if some_sleep { None } else { self.long.all_free() };
+        let along = if frozen { None } else { self.long.all_free() };
         if keep && self.keep.holds::<L>(bodies, ahead_secs, along) {
             return BroadCounts { kept: true, ..self.kept };
         }
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
-        let awake = some_sleep.then_some(self.frozen.awake_slots());
+        // Statics alone are no reason to see paths otherwise than relative to each other.
+        let awake = self.some_sleep.then_some(self.frozen.awake_slots());
         self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
         self.find_afresh::<L>(bodies, method);
         self.lists += 1;
@@ -280,10 +290,12 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
-    /// The pairs of what is awake with what is not, and of long bodies.
+    /// The pairs of what is awake with what is not, and of huge bodies.
     fn find_beside_frozen<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
         let (frozen, reach) = (&self.frozen, &self.reach);
-        frozen.find::<L>(&self.circles, reach.at_rest, &mut self.pairs);
+        // Of statics, relative to what moves, all go the same way.
+        let theirs = frozen.any_slot().map_or(reach.at_rest, |slot| reach.together[slot as usize]);
+        frozen.find::<L>(&self.circles, theirs, &mut self.pairs);
         self.long.hold_against_boxes(bodies, &reach.together, &mut self.pairs);
         let awake = |slot| frozen.is_awake(slot);
         self.long.find_of::<L>(bodies, &reach.alone, awake, &mut self.pairs);
@@ -295,15 +307,15 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
-    /// Drops the pairs that may not collide, or of which both sleep.
+    /// Drops the pairs that may not collide, or of which neither may move.
     fn keep_collidable(&mut self, bodies: &Bodies<R>) {
         let mut kept = 0;
         for at in 0..self.pairs.len() {
             let pair = self.pairs[at];
             // Written always, kept when wanted: no branch to mispredict.
             self.pairs[kept] = pair;
-            let stirs = !self.frozen.active || pair.iter().any(|&slot| self.frozen.is_awake(slot));
-            kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize) & stirs);
+            let may_move = !self.frozen.active || pair.iter().any(|&slot| self.frozen.is_awake(slot));
+            kept += usize::from(bodies.may_collide(pair[0] as usize, pair[1] as usize) & may_move);
         }
         self.pairs.truncate(kept);
         if !self.apart.is_empty() {

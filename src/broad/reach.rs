@@ -8,10 +8,10 @@ use crate::lanes::{Lanes, Real};
 /// Metres per slot, half the margin included.
 #[derive(Clone, Debug)]
 pub(super) struct Reach<R: Real> {
-    /// For pairs of plain bodies: path relative to the mean velocity of all dynamic bodies, so that bodies
+    /// For pairs of bodies found by their circles: path relative to the mean velocity of all dynamic bodies, so that bodies
     /// that fall together do not reach out for each other.
     pub(super) together: Column<R>,
-    /// For pairs with a long body: path as such.
+    /// For pairs with a huge body: path as such.
     pub(super) alone: Column<R>,
     /// Of a body at rest.
     pub(super) at_rest: R,

@@ -43,10 +43,10 @@ impl<R: Real> Sweep<R> {
         let n = self.sorted.len();
         for a in 0..n {
             let (x, y, r, slot) = self.sorted.get(a);
-            let right_end = x + widened(r);
+            let upper_end = x + widened(r);
             let (lx, ly, lr) = (L::splat(x), L::splat(y), L::splat(r));
             let mut at = a + 1;
-            while at < n && self.sorted.x[at] - widened(self.sorted.r[at]) <= right_end {
+            while at < n && self.sorted.x[at] - widened(self.sorted.r[at]) <= upper_end {
                 let in_reach = (n - at).min(L::WIDTH);
                 let hits = self.sorted.meeting(at, lx, ly, lr).bits() & ((1 << in_reach) - 1);
                 for lane in set_lanes(hits) {
@@ -57,12 +57,9 @@ impl<R: Real> Sweep<R> {
         }
     }
 
-    /// By mean distance from the mean, which outliers move little.
     fn choose_axis(&mut self, circles: &Circles<R>) {
         let spread = |column: &Column<R>| {
-            let values = &column.padded()[..circles.len()];
-            let mean = values.iter().map(|v| v.to_f64()).sum::<f64>() / values.len() as f64;
-            values.iter().map(|v| (v.to_f64() - mean).abs()).sum::<f64>()
+            mean_distance(column.padded()[..circles.len()].iter().map(|value| value.to_f64()))
         };
         let (x, y) = (spread(&circles.x), spread(&circles.y));
         let changes = if self.along_y { x > CLEARLY * y } else { y > CLEARLY * x };
@@ -95,9 +92,23 @@ impl<R: Real> Sweep<R> {
         }
         for (to, &from) in self.order.iter().enumerate() {
             let (x, y, r, slot) = circles.get(from as usize);
-            self.sorted.set(to, if self.along_y { (y, x, r, slot) } else { (x, y, r, slot) });
+            let [x, y] = exchanged(self.along_y, [x, y]);
+            self.sorted.set(to, (x, y, r, slot));
         }
     }
+}
+
+/// The axis that circles are sorted along first.
+#[inline(always)]
+pub(super) fn exchanged<T>(along_y: bool, [x, y]: [T; 2]) -> [T; 2] {
+    if along_y { [y, x] } else { [x, y] }
+}
+
+/// Mean distance from the mean: a spread that outliers move little.
+pub(super) fn mean_distance(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    values.map(|value| (value - mean).abs()).sum::<f64>() / count
 }
 
 /// The radius that reaches an end; see the module.

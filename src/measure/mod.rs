@@ -81,9 +81,9 @@ pub struct Counts {
     pub islands: usize,
     /// The least and the most substeps any body had.
     pub substeps: [u32; 2],
-    /// Joints that were solved directly, as masses in their tree differ too much for visits.
+    /// Joints that were solved directly, as masses in their tree or net differ too much for iterative passes.
     pub direct_joints: usize,
-    /// Contacts that were solved at once, as masses that hang together by them differ too much for visits.
+    /// Contacts that were solved at once, as masses that hang together by them differ too much for iterative passes.
     pub direct_contacts: usize,
     /// Bodies whose fields a substep of their scheme cannot follow, advanced by what those do exactly: the most in a substep.
     pub stiff: usize,

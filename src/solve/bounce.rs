@@ -56,7 +56,7 @@ pub(crate) struct Bouncing<L: Lanes> {
     /// Rounds of joints and contacts by which velocities are relaxed after an impact on what joints hold.
     pub(super) rounds: u32,
     /// Per slot, whether joints hold its body.
-    jointed: Vec<bool>,
+    pub(super) jointed: Vec<bool>,
 }
 
 impl<L: Lanes> Default for Bouncing<L> {
@@ -100,7 +100,7 @@ impl<L: Lanes> Bounces<L> {
     }
 }
 
-/// Rounds of joints and contacts after an impact on what joints hold: one round leaves a share of what the other took, cos² of
+/// Rounds of joints and contacts after an impact on, or a bounce of, what joints hold: one round leaves a share of what the other took, cos² of
 /// the angle between them.
 pub(super) const ROUNDS: u32 = 12;
 
@@ -113,13 +113,18 @@ impl<L: Lanes> Bouncing<L> {
         rows: &[[L::Elem; 4]],
         [threshold, dt_secs]: [f64; 2],
     ) {
-        self.jointed.clear();
-        self.jointed.resize(rows.len(), false);
-        joints.mark(&mut self.jointed);
+        self.mark_jointed(joints, rows.len());
         let (threshold, dt_secs) = (L::lit(threshold), L::lit(dt_secs));
         let mut pass = Impacts { rows, jointed: &self.jointed, threshold, dt_secs, any: false };
         stream.visit(&mut pass);
         self.rounds = if pass.any { ROUNDS } else { 0 };
+    }
+
+    /// Notes which bodies joints hold, of so many slots.
+    pub(super) fn mark_jointed(&mut self, joints: &JointStream<L>, slots: usize) {
+        self.jointed.clear();
+        self.jointed.resize(slots, false);
+        joints.mark(&mut self.jointed);
     }
 }
 
@@ -230,7 +235,7 @@ fn rebound<L: Lanes>(mut begins: L, mut since: L, pull: L, restitution: L) -> Re
 pub(crate) struct Bounce<'a, L: Lanes> {
     /// Velocities per slot.
     pub rows: &'a mut [[L::Elem; 4]],
-    /// What bounces displace, per slot: x, y, angle, –; zeros before the pass.
+    /// What bounces displace, per slot: x, y, angle, –; zeros before the first round.
     pub displaced: &'a mut [[L::Elem; 4]],
     /// Gaps up to this count as touched, metres.
     pub touch: L,
@@ -238,8 +243,12 @@ pub(crate) struct Bounce<'a, L: Lanes> {
     pub moved: Option<&'a [[L::Elem; 4]]>,
     /// What was noted.
     pub bounces: &'a mut Bounces<L>,
+    /// Per slot, whether joints hold its body.
+    pub jointed: &'a [bool],
     /// Did something?
     pub any: bool,
+    /// Of which joints hold a body?
+    pub any_jointed: bool,
 }
 
 impl<L: Lanes> Visit<L> for Bounce<'_, L> {
@@ -284,7 +293,11 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
             c.points[k].velocity_impulse = L::select(bounces[k], zero, c.points[k].velocity_impulse);
             kept = kept.max(c.points[k].velocity_impulse);
             noted[k].bounced = L::select(bounces[k], L::one(), noted[k].bounced);
+            // Taken off once, in the first round.
+            noted[k].supported_velocity = L::select(bounces[k], zero, noted[k].supported_velocity);
             self.any |= bounces[k].any();
+            self.any_jointed |= crate::lanes::set_lanes(bounces[k].bits())
+                .any(|lane| [ends.a, ends.b].iter().any(|slots| self.jointed[slots[lane] as usize]));
         }
         normals.end(c, &mut a, &mut b);
         displacements.end(c, &mut to_a, &mut to_b);

@@ -1,8 +1,8 @@
 //! A direct solve for contacts between bodies whose masses are far apart.
 //!
 //! Contact by contact, what is heavy gives a light body beneath it nearly its own speed, the ground stops that, and the heavy
-//! one has lost a share m/M of what it is to lose: ten tonnes that fall on a kilogram take 10⁴ visits, and meanwhile they
-//! are where the kilogram was. So contacts of bodies that hang together by such a pair ([`HARD_RATIO`]) are solved at once, after
+//! one has lost a share m/M of what it is to lose: ten tonnes that fall on a kilogram take 10⁴ visits, and have long gone through it
+//! by then. So contacts of bodies that hang together by such a pair ([`HARD_RATIO`]) are solved at once, after
 //! the pass over all contacts, in `f64`: λ ≥ 0, w = K·λ + q ≥ 0, λ·w = 0, with K = J·M⁻¹·Jᵀ of all their points and q what
 //! their velocities, with bias before bodies move, would be without λ ([`complementarity`]).
 //! They are rigid: the stiffness of a soft contact is said for the lighter body's mass, and a load of 10⁴ times that would sink in by
@@ -34,7 +34,7 @@ pub(crate) const HARD_RATIO: f64 = 64.0;
 /// What points that are pushed out of overlap yield, as a share of what the component's heaviest body does: a load M sinks in by
 /// this share of g·h over the bias rate, 0.2 mm at 4 substeps.
 const COMPLIANCE: f64 = 0.1;
-/// Deeper than this share of the smaller body's inner radius is deep.
+/// Deeper than this share of the smaller body's core ([`Bodies::core`]) is deep.
 const DEEP: f64 = 0.2;
 /// Points of a component that are solved at once.
 const MOST_ROWS: usize = 96;
@@ -100,6 +100,11 @@ impl DirectContacts {
         known && self.components[self.sets.seen(slot) as usize].is_solved()
     }
 
+    /// Bodies have come, gone or changed.
+    pub(super) fn forget(&mut self) {
+        self.looked_at = None;
+    }
+
     /// None in this step.
     pub(super) fn clear(&mut self) {
         self.count = 0;
@@ -119,6 +124,12 @@ impl DirectContacts {
         }
         self.contacts.clear();
         stream.visit(&mut All { contacts: &mut self.contacts });
+        let moves = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
+        let is_hard =
+            |contact: &Contact| contact.slots.into_iter().all(moves) && is_hard(bodies, contact.slots);
+        if !self.contacts.iter().any(is_hard) {
+            return;
+        }
         self.find_components(bodies);
         for (picked, batches) in self.picked.iter_mut().rev().zip(stream.batches()) {
             picked.clear();
@@ -156,9 +167,9 @@ impl DirectContacts {
             let core = movable.map(|slot| bodies.core[slot as usize].to_f64()).fold(f64::MAX, f64::min);
             component.deep |= contact.gap < -DEEP * core;
             if contact.slots.into_iter().all(moves) {
-                let [a, b] = contact.slots.each(|slot| bodies.inv_mass[slot as usize].to_f64());
+                let [a, b] = contact.slots.each(|slot| bodies.inv_mass[slot as usize]);
                 let light = contact.slots[usize::from(b > a)] as usize;
-                component.hard |= a.max(b) >= HARD_RATIO * a.min(b) && touches[light] > 1;
+                component.hard |= is_hard(bodies, contact.slots) && touches[light] > 1;
             }
         }
     }
@@ -187,7 +198,9 @@ impl DirectContacts {
         changes.resize(rows.len(), [0.0; 3]);
         self.order.clear();
         self.order.extend(0..self.rows.len() as u32);
-        self.order.sort_unstable_by_key(|&row| (self.rows[row as usize].component, row));
+        // By component and pair: the order of lanes is that in which contacts came.
+        let key = |row: u32| (self.rows[row as usize].component, self.rows[row as usize].slots, row);
+        self.order.sort_unstable_by_key(|&row| key(row));
         let component = |row: &u32, rows: &[Row]| rows[*row as usize].component;
         let mut first = 0;
         while first < self.order.len() {
@@ -239,6 +252,12 @@ impl DirectContacts {
             }
         }
     }
+}
+
+/// Are two masses too far apart for visits?
+fn is_hard<R: Real>(bodies: &Bodies<R>, slots: [u32; 2]) -> bool {
+    let [a, b] = slots.each(|slot| bodies.inv_mass[slot as usize].to_f64());
+    a.max(b) >= HARD_RATIO * a.min(b)
 }
 
 fn movable<R: Real>(bodies: &Bodies<R>) -> impl Iterator<Item = usize> {

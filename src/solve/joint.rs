@@ -189,6 +189,8 @@ trait Linkage<L: Lanes>: Copy {
     ) -> Self;
     /// Other numbers, the same impulses.
     fn retune(&mut self, numbers: &[Numbers]);
+    /// Keeps what holds bodies, and lets go what drives them.
+    fn let_go(&mut self);
     /// A step begins with bodies A and B here.
     fn place(&mut self, poses: [Pose<L>; 2]);
     /// Bodies have moved and turned by these rows x, y, angle; what that made of the impulses.

@@ -9,7 +9,7 @@
 //!
 //! | part of a step | joints | contacts |
 //! |---|---|---|
-//! | prepare | [`Solving::prepare_joints`]: joints and poses → constraints | [`Solving::follow`], [`Solving::prepare`]: manifolds → constraints |
+//! | prepare | [`Solving::make_joints`], [`Solving::prepare_joints`]: joints and poses → constraints | [`Solving::follow`], [`Solving::prepare`]: manifolds → constraints |
 //! | [`Solving::begin`] | impulses → rows | impulses → rows; approaches |
 //! | [`Solving::solve`] | rows → rows, impulses | rows → rows, impulses |
 //! | [`Solving::settle`] (not `pgs`, `impulse`) | rows, displacements → rows, impulses, arms | rows → rows, impulses |

@@ -3,7 +3,8 @@
 //! A contact is a damped spring of angular frequency ω = 2π·hz and damping ratio ζ, integrated implicitly:
 //! a₁ = 2ζ + hω, a₂ = hω·a₁, a₃ = 1/(1 + a₂); bias rate ω/a₁, mass scale a₂·a₃. The mass scale softens the diagonal
 //! of K, so that the points of a face are solved together (see `block.rs`) and no impulse scale is needed.
-//! Recipe of a substep: predict velocities, warm start per body → push out ([`Push`]) → move → relax ([`Relax`]).
+//! Recipe of a substep: predict velocities, warm start per body → push out ([`Push`]) → move → relax ([`Relax`]); after each pass
+//! what masses make hard is solved at once (`joint/direct.rs`, `direct.rs`).
 //! Source: Catto, Solver2D (2024); the warm start per body and the moving velocity are ours.
 //!
 //! * **Moving velocity.** A substep moves a body by h·u. The push works on u, the relaxation on the velocity v at

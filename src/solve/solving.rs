@@ -221,6 +221,7 @@ impl<L: Lanes> Solving<L> {
     /// Bodies have come, or changed.
     pub fn freshen(&mut self, came: bool) {
         self.deep.fresh = true;
+        self.direct.forget();
         if came {
             self.substep_groups.freshen();
         }
@@ -249,9 +250,7 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         awake: (Option<&[bool]>, u64),
     ) {
-        let substeps = self.substep_groups.of_joints().unwrap_or(context.plan.substeps);
-        let [h_secs, share] = [context.dt_secs / f64::from(substeps), context.plan.impulse_share()];
-        self.lengths.begin_joints(h_secs);
+        let [h_secs, share] = [self.joint_h_secs(context), context.plan.impulse_share()];
         let direct = context.solver == Solver::Soft;
         let fields = context.plan.fields;
         let sources = Sources { joints, bodies, fields, h_secs, share, awake: awake.0, direct };
@@ -266,8 +265,14 @@ impl<L: Lanes> Solving<L> {
         joints: &Joints<L::Elem>,
         awake: (Option<&[bool]>, u64),
     ) {
+        self.lengths.begin_joints(self.joint_h_secs(context));
         self.make_joints(context, bodies, joints, awake);
         self.joints.place(bodies);
+    }
+
+    /// A substep of joints, seconds.
+    fn joint_h_secs(&self, context: &SolverContext<'_, L::Elem>) -> f64 {
+        context.dt_secs / f64::from(self.substep_groups.of_joints().unwrap_or(context.plan.substeps))
     }
 
     /// Before the first substep: what bounces is noted, and where the warm start is said.

@@ -152,9 +152,9 @@ impl<R: Real> SubstepGroups<R> {
         self.fresh = true;
     }
 
-    /// Notes ωh of what swings fastest on rods, in the substeps that joints have had.
+    /// Notes ω, rad/s, of what swings fastest on rods.
     pub(super) fn note_swing(&mut self, goal: &Goal, swing: f64) {
-        self.swing_needs = swing * f64::from(self.joined.unwrap_or(goal.base)) / FOLLOWED;
+        self.swing_needs = swing * goal.dt_secs / FOLLOWED;
     }
 
     /// Are islands to be told apart in this step? `looked`: it began with a look.
@@ -246,7 +246,7 @@ impl<R: Real> SubstepGroups<R> {
         let of = |island: &Island| if looked { aimed(goal, island, self.fresh) } else { island.substeps };
         let joined = self.islands.iter().filter(|island| island.joined);
         let asked = joined.map(of).max().unwrap_or(goal.base).max(goal.base);
-        asked.max(goal::following(self.swing_needs, self.joined.unwrap_or(goal.base), looked))
+        asked.max(goal::substeps_to_follow(self.swing_needs, self.joined.unwrap_or(goal.base), looked))
     }
 
     /// Islands, what they carry and what they have had.

@@ -34,6 +34,7 @@ impl<L: Lanes> World<L> {
             self.motion.forget_drift();
         }
         self.made.bodies = Some(seen);
+        self.broad.forget();
         self.log.watchdog.forget();
         self.solving.freshen(!removed);
         self.laws.fields = self.laws.forces.fields();

@@ -46,7 +46,7 @@ impl Complementarity {
         self.active.resize(rows, false);
     }
 
-    /// An entry of K and the one it mirrors; on the diagonal, of a row that is none, 0.
+    /// An entry of K and the one it mirrors; 0 on the diagonal where nothing yields.
     pub(super) fn set(&mut self, i: usize, j: usize, value: f64) {
         let value = if i != j {
             value

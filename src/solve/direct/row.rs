@@ -99,7 +99,8 @@ impl<L: Lanes> Visit<L> for All<'_> {
             let points = masses.iter().filter(|mass| mass[lane] > L::Elem::ZERO).count() as u32;
             if points > 0 {
                 let (slots, at) = ([ends.a[lane], ends.b[lane]], [POINTS as u32, at as u32, lane as u32]);
-                let gap = c.points.iter().map(|point| number(point.separation, lane)).fold(0.0, f64::min);
+                let exist = c.points.iter().filter(|point| number(point.mass, lane) > 0.0);
+                let gap = exist.map(|point| number(point.separation, lane)).fold(0.0, f64::min);
                 self.contacts.push(Contact { slots, at, points, gap });
             }
         }
@@ -121,10 +122,14 @@ impl<L: Lanes> Visit<L> for Read<'_, L::Elem> {
         for lane in set_lanes(self.picked[POINTS - 1][at]) {
             let slots = [ends.a[lane], ends.b[lane]];
             let moves = |slot: &u32| self.velocities[*slot as usize][3] > L::Elem::ZERO;
-            let Some(end) = slots.into_iter().find(moves) else { continue };
+            let end = slots.into_iter().find(moves).unwrap_or(slots[1]);
             let component = self.sets.seen(end);
             for point in &c.points {
                 let [mass, separation] = [point.mass, point.separation].each(|value| number(value, lane));
+                // Of a contact with one point the second does not exist.
+                if mass <= 0.0 {
+                    continue;
+                }
                 let stopped = number(point.velocity_impulse, lane);
                 self.points.push(Row {
                     component,
@@ -167,12 +172,11 @@ pub(super) struct Write<'a> {
 impl<L: Lanes> Visit<L> for Write<'_> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, _: Ends<'_>, at: usize) {
         for lane in set_lanes(self.picked[POINTS - 1][at]) {
-            for point in &mut c.points {
+            for point in c.points.iter_mut().filter(|point| number(point.mass, lane) > 0.0) {
                 let row = &self.points[self.next];
                 self.next += 1;
                 let mut stopped = point.velocity_impulse.to_array();
-                let impulse = if row.mass > 0.0 { row.impulse / (row.mass * self.share) } else { 0.0 };
-                stopped[lane] = L::Elem::from_f64(impulse);
+                stopped[lane] = L::Elem::from_f64(row.impulse / (row.mass * self.share));
                 point.velocity_impulse = L::load(&stopped);
             }
         }

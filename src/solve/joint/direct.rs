@@ -1,4 +1,4 @@
-//! A direct solve for chains and trees of joints whose masses differ much.
+//! A direct solve for chains, trees and nets of joints whose masses differ much.
 //!
 //! One visit a substep carries a weight's pull one joint further; a chain of 50 links that carries 50,000 times a link
 //! needs thousands, and without them impulses swing up until numbers end. Where the rigid joints of some bodies – pins, welds,
@@ -74,7 +74,7 @@ struct Member {
     inv_inertia: f64,
     /// Inertia that its pins' pulls add, kg·m².
     borne: f64,
-    /// (ωh)² with which rods swing it across them.
+    /// ω² with which rods swing it across them, 1/s².
     swing: f64,
     /// What its pins have turned it with in this substep, N·m·s.
     torque: f64,
@@ -110,15 +110,17 @@ pub(super) struct Direct {
     links: Vec<Link>,
     /// By slot.
     members: Vec<Member>,
-    /// The largest (ωh)² of bodies across their rods at the end of this step and of the last.
+    /// The largest ω² of bodies across their rods at the end of this step and of the last.
     swings: [f64; 2],
+    /// Whose swing was foreseen: slots of joints.
+    foreseen: Vec<[usize; 2]>,
 }
 
 impl Direct {
-    /// ωh of the body that its rods' pulls swing fastest across them: what both of the last steps saw, for a snap asks for
-    /// nothing.
+    /// ω of the body that its rods' pulls swing fastest across them, rad/s: what both of the last steps saw, for a snap asks
+    /// for nothing.
     pub(super) fn swing(&self) -> f64 {
-        self.swings[0].min(self.swings[1]).sqrt()
+        if self.nodes.is_empty() { 0.0 } else { self.swings[0].min(self.swings[1]).sqrt() }
     }
 
     /// Pins that are solved directly.
@@ -130,7 +132,6 @@ impl Direct {
         self.nodes.clear();
         self.later.clear();
         self.tree_ends.clear();
-        self.swings = [0.0; 2];
     }
 
     /// A step begins: bodies of all trees turn with the inertia that the last impulses, of substeps of `h_secs`, add.
@@ -179,7 +180,7 @@ impl Direct {
             for (end, sign) in [(0, -1.0), (1, 1.0)] {
                 let (arm, body) = (link.arm(end), &mut members[node.slots[end]]);
                 body.borne += h_secs * (pull * length(arm));
-                body.swing += link.per_length() * (h_secs * pull) * body.own_inv_mass;
+                body.swing += link.per_length() * (pull / h_secs) * body.own_inv_mass;
                 body.torque += sign * share * arm.cross(given);
             }
         }
@@ -334,7 +335,7 @@ impl Direct {
                 own[j].1 = crate::each::indexed(|k| own[j].1[k] - taken[k]);
                 own[j].0 = minus(own[j].0, times(factor, a_ij));
                 for &(i, a_ii) in &mine[k + 1..] {
-                    // Neighbours of a leaf share a body, so that they are neighbours too.
+                    // In a tree neighbours of a leaf share a body, in a net `fill_in` made them neighbours.
                     let change = times(factor, a_ii);
                     let theirs = &mut rest[j - at - 1];
                     if let Some((_, block)) = theirs.iter_mut().find(|(other, _)| *other == i) {

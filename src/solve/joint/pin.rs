@@ -201,6 +201,10 @@ impl<L: Lanes> Linkage<L> for Pin<L> {
         self.row.retune(numbers);
     }
 
+    fn let_go(&mut self) {
+        self.row.let_go();
+    }
+
     /// Arms, gap and angle from the poses. The angle is what it was, corrected by the sine of what it is off by: no
     /// arc tangent needed, and whole turns stay counted. (Written over by hand it comes back, over several steps
     /// where it was off by more than a radian.)

@@ -155,6 +155,10 @@ impl<L: Lanes> Linkage<L> for Rod<L> {
         self.row.retune(numbers);
     }
 
+    fn let_go(&mut self) {
+        self.row.let_go();
+    }
+
     #[inline(always)]
     fn place(&mut self, [a, b]: [Pose<L>; 2]) {
         self.arms = [a.rot.apply(self.anchors[0]), b.rot.apply(self.anchors[1])];

@@ -179,6 +179,11 @@ impl<L: Lanes> Row<L> {
         change
     }
 
+    /// For displacements: springs and motors have acted, and what bounds carry, N·s, is none of theirs.
+    pub(super) fn let_go(&mut self) {
+        (self.drive, self.limit, self.bound) = (L::zero(), L::zero(), L::zero());
+    }
+
     /// Impulses of a substep that is `share` of the last one.
     #[inline(always)]
     pub(super) fn scale(&mut self, share: L) {

@@ -131,7 +131,7 @@ pub struct Sources<'a, R: Real> {
     pub share: f64,
     /// By slot; a joint without an end that is awake has no constraint. `None`: all are.
     pub awake: Option<&'a [bool]>,
-    /// Hard trees are to be solved directly.
+    /// Hard trees and nets are to be solved directly.
     pub direct: bool,
 }
 
@@ -261,7 +261,7 @@ impl<L: Lanes> JointStream<L> {
         self.direct.clear();
         if direct {
             self.direct.look_over(&self.pins, &self.rods, bodies);
-            self.direct.foresee_swing(&self.rods, (bodies, fields), h_secs);
+            self.direct.foresee_swing(&self.rods, (bodies, fields));
         }
     }
 
@@ -342,6 +342,12 @@ impl<L: Lanes> JointStream<L> {
         });
     }
 
+    /// [`JointStream::note`]; until they are taken back joints hold bodies, but drive none: displacements are solved with them.
+    pub(in crate::solve) fn note_and_let_go(&mut self) {
+        self.note();
+        each!(self, |c, _ends| { c.let_go() });
+    }
+
     /// Notes impulses, to be taken back by [`JointStream::restore`].
     pub(in crate::solve) fn note(&mut self) {
         self.before.0.clone_from(&self.pins.links);
@@ -374,7 +380,7 @@ impl<L: Lanes> JointStream<L> {
         });
     }
 
-    /// ωh of the body that pulls of directly solved rods swing fastest across them, as of the last step.
+    /// ω of the body that pulls of directly solved rods swing fastest across them, rad/s, as of the last step.
     pub fn swing(&self) -> f64 {
         self.direct.swing()
     }
@@ -384,7 +390,7 @@ impl<L: Lanes> JointStream<L> {
         self.direct.len()
     }
 
-    /// After [`JointStream::push`] (with how it was) or [`JointStream::relax`]: hard trees all at once.
+    /// After [`JointStream::push`] (with how it was) or [`JointStream::relax`]: hard trees and nets all at once.
     pub(in crate::solve) fn solve_directly(
         &mut self,
         rows: &mut [[L::Elem; 4]],

@@ -44,18 +44,18 @@ impl<L: Lanes> Solving<L> {
     ) -> bool {
         // Left as zeros by what was displaced before.
         self.bouncing.displaced.resize(motion.velocity.fours().len(), [L::Elem::ZERO; 4]);
-        if !self.bounce_once(context, motion, settled) {
-            return false;
-        }
-        if !self.joints.is_empty() {
+        self.bouncing.mark_jointed(&self.joints, motion.velocity.fours().len());
+        let Some(jointed) = self.bounce_once(context, motion, settled) else { return false };
+        if jointed {
             self.displace_with_joints(context, motion, settled);
             let [h_secs, share] = [context.plan.h_secs, context.plan.impulse_share()];
+            let how = Stiffness::soft(h_secs, share);
             self.joints.note();
             for _ in 0..bounce::ROUNDS {
-                self.joints.relax_velocities(motion.velocity.fours_mut(), &Stiffness::soft(h_secs, share));
+                self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
                 self.bounce_once(context, motion, settled);
             }
-            self.joints.relax_velocities(motion.velocity.fours_mut(), &Stiffness::soft(h_secs, share));
+            self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
             self.joints.restore();
         }
         let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
@@ -65,23 +65,24 @@ impl<L: Lanes> Solving<L> {
         true
     }
 
-    /// One round over the contacts that bounce; says whether there were any.
+    /// One round over the contacts that bounce: `None` where none does, else whether joints hold one of their bodies.
     fn bounce_once(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
         motion: &mut Motion<L::Elem>,
         settled: bool,
-    ) -> bool {
-        let Self { bouncing: Bouncing { displaced, bounces, .. }, stream, .. } = self;
+    ) -> Option<bool> {
+        let Self { bouncing: Bouncing { displaced, bounces, jointed, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), (!settled).then_some(motion.moved.fours()));
         let touch = L::lit(context.needs.touch());
-        let mut pass = bounce::Bounce { rows, displaced, touch, moved, bounces, any: false };
+        let (any, any_jointed) = (false, false);
+        let mut pass = bounce::Bounce { rows, displaced, touch, moved, bounces, jointed, any, any_jointed };
         stream.visit(&mut pass);
-        pass.any
+        pass.any.then_some(pass.any_jointed)
     }
 
     /// Joints take from what bounces displace what would part them: a displacement is to its push what a velocity is to its
-    /// impulse, over a second. They are seen from half-way, for a chord is square to the radius that halves it.
+    /// impulse, over a second. They are seen from half-way along it, where a rod is square to the chord of its arc.
     fn displace_with_joints(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
@@ -89,7 +90,7 @@ impl<L: Lanes> Solving<L> {
         settled: bool,
     ) {
         let over_a_second = Stiffness::soft(1.0, context.plan.impulse_share());
-        self.joints.note();
+        self.joints.note_and_let_go();
         let half = L::Elem::from_f64(0.5);
         for (displaced, row) in self.bouncing.displaced.iter_mut().zip(motion.velocity.fours()) {
             *displaced = displaced.each(|way| way * half);

@@ -82,7 +82,7 @@ fn below(substeps: u32) -> u32 {
 }
 
 /// What joints should have that have `held` and need so many: more at once, fewer rung by rung.
-pub(super) fn following(needs: f64, held: u32, looked: bool) -> u32 {
+pub(super) fn substeps_to_follow(needs: f64, held: u32, looked: bool) -> u32 {
     if needs > f64::from(held) {
         return RUNGS.into_iter().find(|&n| f64::from(n) >= needs).unwrap_or(RUNGS[RUNGS.len() - 1]);
     }

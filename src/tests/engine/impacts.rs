@@ -154,3 +154,29 @@ fn light_bodies_between_heavy_ones_leave_their_momentum_alone() {
         }
     }
 }
+
+/// A heavy plank falls onto a light disc and a light box as high: one contact has one point, the other two, and both bear it.
+#[test]
+fn contacts_of_one_and_of_two_points_are_solved_together() {
+    for ratio in [100.0, 1e4] {
+        let floor = BodySpec::new(ShapeSpec::Box([5.0, 0.5]), [0.0, -0.5]).fixed();
+        let wedge = |x: f64| BodySpec::new(ShapeSpec::Box([0.1, 0.1]), [x, 0.1]).fixed().surface(0.0, 0.0);
+        let bodies = vec![
+            floor,
+            // Keep the disc from rolling.
+            wedge(-1.85),
+            wedge(-1.15),
+            BodySpec::new(ShapeSpec::Circle(0.25), [-1.5, 0.25]).mass(1.0),
+            BodySpec::new(ShapeSpec::Box([0.25, 0.25]), [1.5, 0.25]).mass(1.0),
+            BodySpec::new(ShapeSpec::Box([2.0, 0.2]), [0.0, 1.2]).mass(ratio),
+        ];
+        let world = advanced(bodies, Forces::gravity(), Settings::default(), 300);
+        let (states, right) = (world.states(), [0.25, 0.25, 0.7]);
+        for (state, right) in states[3..].iter().zip(right) {
+            assert!((state.position[1] - right).abs() < 2e-3, "{ratio}: {state:?}");
+        }
+        let plank = states[5];
+        assert!(plank.rotation[1].abs() < 2e-3 && plank.velocity[1].abs() < 1e-3, "{ratio}: {plank:?}");
+        assert!(world.counts().direct_contacts >= 4, "{:?}", world.counts());
+    }
+}

@@ -4,7 +4,7 @@
 
 use lamina2d::lanes::{Lanes, f32s, f64s};
 use lamina2d::measure::Stage;
-use lamina2d::scene::{Scene, by_name};
+use lamina2d::scene::{BodySpec, Scene, ShapeSpec, by_name};
 use lamina2d::settings::{Precision, Settings};
 use lamina2d::simulation::{Simulation, simulate};
 use lamina2d::world::World;
@@ -92,4 +92,24 @@ fn small_worlds_are_timed_now_and_then() {
     assert_eq!(timed("stack/3", false), (3, 1, true));
     assert_eq!(timed("stack/3", true), (33, 1, true));
     assert_eq!(timed("columns/80", false), (33, 1, true));
+}
+
+/// One of many statics that is written elsewhere is met where it is.
+#[test]
+fn statics_written_elsewhere_are_met_there() {
+    for statics in [10, 70] {
+        let fixed = |k: usize| BodySpec::new(ShapeSpec::Box([0.5, 0.5]), [2.0 * k as f64, -50.0]).fixed();
+        let mut bodies: Vec<_> = (0..statics).map(fixed).collect();
+        bodies.push(BodySpec::new(ShapeSpec::Circle(0.2), [0.0, 0.0]));
+        let scene = Scene { bodies, ..by_name("stack/3", None, 1).unwrap() };
+        let mut world = World::<f32s::X8>::from_scene(&scene, Settings::default()).unwrap();
+        world.step(1.0 / 60.0).unwrap();
+        // The body in slot 1 is the first.
+        (world.bodies_mut().x[1], world.bodies_mut().y[1]) = (0.0, -2.0);
+        for _ in 0..120 {
+            world.step(1.0 / 60.0).unwrap();
+        }
+        let y = world.bodies().y[statics + 1];
+        assert!((y + 1.3).abs() < 0.01, "{statics} statics: at {y}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Joints that close on themselves, and rods that swing, bounce and carry: solved at once, whatever the masses.
 
 use lamina2d::force::Forces;
-use lamina2d::joint::{Distance, JointKind, JointSpec, Weld};
+use lamina2d::joint::{Distance, JointKind, JointSpec, Motor, Revolute, Weld};
 use lamina2d::scene::{BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::Settings;
 use lamina2d::simulation::Simulation;
@@ -131,5 +131,51 @@ fn what_rods_guide_bounces_with_its_energy() {
             assert!(off < bound, "{reach} m, e = {e}, step {step}, bounce {bounces}: {found}, {right}");
         }
         assert!(bounces > 1, "{reach} m: {bounces} bounces");
+    }
+}
+
+/// A ball that bounces is no concern of what joints hold elsewhere: bit for bit as without it.
+#[test]
+fn motors_do_not_turn_further_where_something_bounces() {
+    for (speed, max_torque) in [(5.0, 1e6), (0.5, 1e6), (5.0, 0.1)] {
+        let wheel = |with_ball: bool| {
+            let motor = Some(Motor { speed, max_torque });
+            let mut bodies = vec![
+                BodySpec::new(ShapeSpec::Box([1.0, 0.5]), [0.0, -0.5]).fixed().surface(1.0, 0.0),
+                BodySpec::new(ShapeSpec::Circle(0.5), [5.0, 5.0]).mass(1.0).surface(1.0, 0.0),
+            ];
+            if with_ball {
+                bodies.push(BodySpec::new(ShapeSpec::Circle(0.1), [0.0, 1.0]).mass(1.0).surface(1.0, 0.0));
+            }
+            let mut scene = scene_of(bodies, Forces::gravity());
+            let kind = JointKind::Revolute(Revolute { anchor: [5.0, 5.0], motor, limits: None });
+            scene.joints = vec![JointSpec::new(0, 1, kind)];
+            let world = advanced(&scene, 300);
+            world.states()[1]
+        };
+        let (alone, beside) = (wheel(false), wheel(true));
+        assert_eq!(alone, beside, "{speed} rad/s, {max_torque} N·m");
+    }
+}
+
+/// A chain that hangs still stays so where its step changes from one to the next: what joints carry belongs to a length.
+#[test]
+fn chains_hang_still_under_changing_steps() {
+    for (links, load, others) in [(4, 2.0, 80.0), (4, 2.0, 120.0), (10, 1.0, 90.0)] {
+        let bodies = (0..=links).map(|k| {
+            let bead = disc([0.0, -0.5 * f64::from(k)]);
+            if k == 0 { bead.fixed() } else { bead.mass(if k == links { load } else { 1.0 }) }
+        });
+        let mut scene = scene_of(bodies.collect(), Forces::gravity());
+        scene.joints = (0..links as usize).map(|k| rod(k, k + 1)).collect();
+        let mut world = start(&scene, Settings::default());
+        let mut most = 0.0f64;
+        for step in 0..600 {
+            world.step(if step % 3 == 0 { 1.0 / 60.0 } else { 1.0 / others }).expect("stays finite");
+            let [x, y] = world.states().last().expect("a load").position;
+            most = most.max((y + 0.5 * f64::from(links)).abs() + x.abs());
+        }
+        println!("{links} rods, {load} kg, every third step {others}/60 as long: off by {most:.1e} m");
+        assert!(most < 1e-3 * f64::from(links), "{links} rods, {load} kg, {others}: off by {most} m");
     }
 }

@@ -5,7 +5,7 @@ pub(super) type Triple = [f64; 3];
 /// 3×3, by rows.
 pub(super) type Block = [Triple; 3];
 
-/// A pivot that has all but vanished, as a share of its entry: a tenth of what nets add to theirs.
+/// A pivot that has all but vanished, as a share of its entry: well under what nets add to theirs.
 const LEAST_PIVOT: f64 = 1e-5;
 
 pub(super) fn transposed(a: Block) -> Block {

@@ -13,8 +13,8 @@ use crate::solve::joint::rod::Rod;
 use crate::solve::joint::stream::Batches;
 use crate::vec2::Vec2;
 
-/// Added to the diagonals of nets, as a share of them: rows that depend on each other share what they carry. Of each change
-/// of the impulses alone, so that what a net carries for long it carries nearly whole: a truss of ten bays and 0.1 kg a node
+/// Added to the diagonals of nets, as a share of them: rows that depend on each other share what they carry. It softens
+/// changes of the impulses alone, so that what a net carries for long it carries nearly whole: a truss of ten bays and 0.1 kg a node
 /// sags under 100 kg by 0.2 mm with 1e-4, 1.6 mm with 1e-3, 4.6 mm with 3e-3; one with both diagonals feeds its rounding errors
 /// to no number with 1e-4, and under 1000 kg with 1e-3.
 const SHARED_BY_RODS: f64 = 3e-3;
@@ -91,13 +91,18 @@ impl Direct {
         }
     }
 
-    /// Before impulses are known: rods may have to pull with the weight of their whole tree or net.
+    /// Before impulses are known: rods may have to pull with the weight of their whole tree or net. Of joints that were solved
+    /// directly before they are.
     pub(in crate::solve::joint) fn foresee_swing<L: Lanes>(
         &mut self,
         rods: &Batches<Rod<L>>,
         (bodies, fields): (&Bodies<L::Elem>, &[Field<L::Elem>]),
-        h_secs: f64,
     ) {
+        if self.nodes.iter().map(|node| node.slots).eq(self.foreseen.iter().copied()) {
+            return;
+        }
+        self.foreseen.clear();
+        self.foreseen.extend(self.nodes.iter().map(|node| node.slots));
         let mut counted = vec![false; self.members.len()];
         let (mut first, mut fastest) = (0, 0.0f64);
         for &end in &self.tree_ends {
@@ -121,7 +126,7 @@ impl Direct {
                 }
             }
         }
-        self.swings = [fastest * h_secs * h_secs; 2];
+        self.swings = [fastest; 2];
     }
 
     /// Neighbours of a joint become neighbours as it is eliminated: those from `first` on get the blocks that come to be.

@@ -1,6 +1,6 @@
 //! Which joints make up trees or nets whose masses are too far apart for visits, and in what order these are eliminated.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::partition::Sets;
 
@@ -63,7 +63,7 @@ impl Trees {
                 }
             }
         }
-        // What hangs from the ground by two joints closes on itself through it; of pins and rods alone it has rows to spare.
+        // What hangs from the ground by two joints closes on itself through it; with pins alone its rows are still independent.
         let mut held = vec![(0, false); slots];
         for (&[a, b], weld) in ends.iter().zip(welds) {
             let Some(end) = [a, b].into_iter().find(|&slot| moves(slot)) else { continue };
@@ -148,21 +148,20 @@ impl Trees {
             let on = self.ends[joint].into_iter().flat_map(|slot| &self.on[slot]).copied();
             on.filter(|&other| other != joint).collect()
         };
-        let mut neighbours: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); self.ends.len()];
-        for &joint in &left {
-            neighbours[joint] = beside(joint);
-        }
+        let mut neighbours: BTreeMap<usize, BTreeSet<usize>> =
+            left.iter().map(|&joint| (joint, beside(joint))).collect();
         let (mut order, mut blocks) = (Vec::new(), 0);
-        while let Some(at) = (0..left.len()).min_by_key(|&at| (neighbours[left[at]].len(), left[at])) {
+        while let Some(at) = (0..left.len()).min_by_key(|&at| (neighbours[&left[at]].len(), left[at])) {
             let joint = left.swap_remove(at);
-            let around = std::mem::take(&mut neighbours[joint]);
+            let around = neighbours.remove(&joint).unwrap_or_default();
             blocks += around.len();
             if blocks > MOST_BLOCKS * joints.len() {
                 return None;
             }
             for &other in &around {
-                neighbours[other].extend(around.iter().copied().filter(|&third| third != other));
-                neighbours[other].remove(&joint);
+                let beside = neighbours.entry(other).or_default();
+                beside.extend(around.iter().copied().filter(|&third| third != other));
+                beside.remove(&joint);
             }
             order.push(joint);
         }
