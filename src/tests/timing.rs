@@ -150,7 +150,8 @@ fn flying(count: usize, apart: f64, shape: &ShapeSpec) -> Vec<BodySpec> {
 /// What a step costs has no cliffs: planks little longer than others, lines one way or the other, statics in a heap.
 #[test]
 fn neighbours_cost_alike() {
-    let planks = |aspect: f64| flying(1500, 2.0, &ShapeSpec::Box([0.2 * aspect, 0.2]));
+    // Of one area, and apart: what differs is their form.
+    let planks = |aspect: f64| flying(1500, 3.0, &ShapeSpec::Box([0.4 * aspect.sqrt(), 0.4 / aspect.sqrt()]));
     let of_planks = least_ms(&[2.9, 3.1, 4.0, 5.0].map(planks));
     for pair in of_planks.windows(2) {
         assert!(pair[1] < 2.0 * pair[0], "{of_planks:?}");
