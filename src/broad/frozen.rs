@@ -2,8 +2,9 @@
 //! asleep throughout.
 //!
 //! What cannot move stays sorted along the axis of its wider spread from one list to the next (coordinates are exchanged where that
-//! is y, as in the sweep); a body that is awake meets those whose centre is no further along it than both radii, the widest of them for all. Ends lie 8ε of that further out: fl(x − e) > x' means
-//! x − x' > e exactly, as rounding is monotone, and then [`super::meet`] says no after its own rounding, at every width.
+//! is y, as in the sweep); a body that is awake meets those whose centre is no further along it than both radii, the widest of
+//! them for all. Ends lie 8ε of that further out: fl(x − e) > x' means x − x' > e exactly, as rounding is monotone, and then
+//! [`super::meet`] says no after its own rounding, at every width.
 
 use super::sweep::{exchanged, mean_distance};
 use super::{Circles, ordered};

@@ -100,8 +100,8 @@ impl<L: Lanes> Bounces<L> {
     }
 }
 
-/// Rounds of joints and contacts after an impact on, or a bounce of, what joints hold: one round leaves a share of what the other took, cos² of
-/// the angle between them.
+/// Rounds of joints and contacts after an impact on, or a bounce of, what joints hold: one round leaves a share of what the
+/// other took, cos² of the angle between them.
 pub(super) const ROUNDS: u32 = 12;
 
 impl<L: Lanes> Bouncing<L> {
