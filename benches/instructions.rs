@@ -24,9 +24,8 @@ use iai_callgrind::{
     Callgrind, LibraryBenchmarkConfig, OutputFormat, library_benchmark, library_benchmark_group,
 };
 use lamina2d::column::Column;
-use lamina2d::lanes::f32s;
+use lamina2d::internals::PlainWorld;
 use lamina2d::simulation::Simulation;
-use lamina2d::world::World;
 
 use common::{Agreement, Settled, step_through, world};
 use kernels::Work;
@@ -71,7 +70,7 @@ fn path_of(name: &str, steps: usize) -> PathBuf {
 }
 
 /// Columns of poses and velocities.
-fn columns(world: &mut World<f32s::X8>) -> [&mut Column<f32>; 7] {
+fn columns(world: &mut PlainWorld) -> [&mut Column<f32>; 7] {
     let bodies = world.bodies_mut();
     [
         &mut bodies.x,
@@ -85,7 +84,7 @@ fn columns(world: &mut World<f32s::X8>) -> [&mut Column<f32>; 7] {
 }
 
 /// Steps a scene through and leaves its state in a file: hash, then columns.
-fn hand_over_state(name: &str, steps: usize) -> World<f32s::X8> {
+fn hand_over_state(name: &str, steps: usize) -> PlainWorld {
     let mut world = step_through(name, steps);
     let mut bytes = world.hash().to_le_bytes().to_vec();
     for column in columns(&mut world) {
@@ -100,7 +99,7 @@ fn hand_over_state(name: &str, steps: usize) -> World<f32s::X8> {
 }
 
 /// The state that [`hand_over_state`] left.
-fn restore(name: &str, steps: usize) -> World<f32s::X8> {
+fn restore(name: &str, steps: usize) -> PlainWorld {
     let bytes = std::fs::read(path_of(name, steps)).expect("a state that was handed over");
     let (hash, values) = bytes.split_at(8);
     let mut values =

@@ -223,6 +223,7 @@ impl<R: Real> Bodies<R> {
         self.alive[slot]
     }
     /// How many living bodies are in a range of slots, of which some may lie past the last.
+    #[inline]
     pub fn live_in(&self, slots: Range<usize>) -> usize {
         self.alive[slots.start..slots.end.min(self.len())].iter().filter(|&&alive| alive).count()
     }

@@ -195,20 +195,30 @@ impl<R: Real> Manifolds<R> {
 
     fn take_over(&mut self) {
         let Self { now, before, gone, .. } = self;
-        let mut leave = |old_at: usize| gone.extend(Some(before.home[old_at]).filter(|home| home.is_some()));
+        let mut leave = |old_at: usize| {
+            let home = before.home[old_at];
+            if home.is_some() {
+                gone.push(home);
+            }
+        };
         for number in 0..6 {
-            let mut old = before.bucket(number).peekable();
+            let mut old = before.bucket(number);
             for at in now.bucket(number) {
                 let order = now.order(at);
-                while let Some(old_at) = old.next_if(|&old_at| before.order(old_at) < order) {
-                    leave(old_at);
+                while !old.is_empty() && before.order(old.start) < order {
+                    leave(old.start);
+                    old.start += 1;
                 }
-                match old.next_if(|&old_at| before.order(old_at) == order) {
-                    Some(old_at) => now.take_place(at, before, old_at),
-                    None => now.clear_place(at, R::from_f64(Code::UNKNOWN)),
+                if !old.is_empty() && before.order(old.start) == order {
+                    now.take_place(at, before, old.start);
+                    old.start += 1;
+                } else {
+                    now.clear_place(at, R::from_f64(Code::UNKNOWN));
                 }
             }
-            old.for_each(&mut leave);
+            for old_at in old {
+                leave(old_at);
+            }
         }
     }
 
@@ -269,22 +279,27 @@ impl<R: Real> Manifolds<R> {
         self.now.code[at] >= R::ZERO
     }
     /// Rows per place; see [`geometry`].
+    #[inline]
     pub fn geometry(&self) -> &[[R; ROW]] {
         self.now.geometry.rows()
     }
     /// Rows per place; see [`gap`].
+    #[inline]
     pub fn gaps(&self) -> &[[R; 4]] {
         self.now.gap.fours()
     }
     /// Rows per place; see [`gap`].
+    #[inline]
     pub fn gaps_mut(&mut self) -> &mut [[R; 4]] {
         self.now.gap.fours_mut()
     }
     /// Rows per place; see [`impulse`].
+    #[inline]
     pub fn impulses(&self) -> &[[R; 4]] {
         self.now.impulse.fours()
     }
     /// Rows per place; see [`impulse`].
+    #[inline]
     pub fn impulses_mut(&mut self) -> &mut [[R; 4]] {
         self.now.impulse.fours_mut()
     }
@@ -332,8 +347,8 @@ impl<R: Real> Manifolds<R> {
         for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
             rows[place as usize] = scratch[lane];
         }
-        for (&place, &fresh) in places[..L::WIDTH].iter().zip(&codes) {
-            self.set_code(place as usize, fresh);
+        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
+            self.set_code(place as usize, codes[lane]);
         }
     }
 

@@ -44,6 +44,7 @@ mod sweep;
 use glam::DVec2;
 
 use crate::body::{Bodies, BodyKind};
+use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::motion::{Fast, FastBodies};
 use crate::seams::Seams;
@@ -176,7 +177,7 @@ impl<R: Real> Continuous<R> {
         let walls = self.obstacles.iter().map(|&slot| Wall::new(bodies, slot as usize, around.dt_secs));
         self.walls.extend(walls);
         self.set_out(bodies, around);
-        self.pairs.sort_unstable();
+        self.pairs.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b));
         for way in 0..self.ways.len() {
             self.look_ahead(bodies, around, way);
         }
@@ -207,7 +208,7 @@ impl<R: Real> Continuous<R> {
         }
         let fast = self.ways.len();
         for &[a, b] in around.pairs {
-            let both = [a, b].map(|slot| slot as usize);
+            let both = [a, b].each(|slot| slot as usize);
             let is_fast = |slot: usize| (1..=fast).contains(&(self.way_of[slot] as usize));
             if !both.iter().any(|&slot| is_fast(slot))
                 || both.iter().any(|&slot| bodies.kind(slot) != BodyKind::Dynamic)
@@ -221,10 +222,10 @@ impl<R: Real> Continuous<R> {
                     self.set_out_one(bodies, around, slot, sweep);
                 }
             }
-            let ways = both.map(|slot| self.way_of[slot]);
+            let ways = both.each(|slot| self.way_of[slot]);
             // One that is not finite has none; the finite check names it.
             if ways.iter().all(|&way| way > 0) {
-                let [a, b] = ways.map(|way| way - 1);
+                let [a, b] = ways.each(|way| way - 1);
                 self.pairs.extend([[a, b], [b, a]]);
             }
         }

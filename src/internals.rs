@@ -8,6 +8,7 @@ use crate::body::Bodies;
 use crate::lanes::f32s;
 use crate::scene::Scene;
 use crate::settings::{Broad, Settings};
+use crate::simulation::Simulation;
 use crate::world::World;
 
 pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
@@ -35,31 +36,54 @@ macro_rules! at_width {
     };
 }
 
+/// A world of benches: 8 lanes, default settings.
+pub type PlainWorld = World<f32s::X8>;
+
+/// The world of a scene before its first step.
+///
+/// # Errors
+/// A scene that cannot be run.
+pub fn plain_world(scene: &Scene) -> Result<PlainWorld, Failed> {
+    Ok(World::from_scene(scene, Settings::default())?)
+}
+
+/// Takes so many steps.
+///
+/// # Errors
+/// A state that is not finite.
+pub fn step_plain(world: &mut PlainWorld, dt_secs: f64, steps: usize) -> Result<(), Failed> {
+    (0..steps).try_for_each(|_| world.step(dt_secs).map_err(Failed::from))
+}
+
+/// The world behind the interface of all widths.
+pub fn as_simulation(world: &PlainWorld) -> &dyn Simulation {
+    world
+}
+
 /// The bodies and candidate pairs of a scene after so many of its steps at 8 lanes.
 ///
 /// # Errors
 /// A scene that cannot be run, or a state that is not finite.
-pub fn bodies_after(scene: &Scene, steps: u64) -> Result<(Bodies<f32>, Vec<[u32; 2]>), Failed> {
-    let mut world = World::<f32s::X8>::from_scene(scene, Settings::default())?;
-    for _ in 0..steps {
-        world.step(scene.dt_secs)?;
-    }
+pub fn bodies_after(scene: &Scene, steps: usize) -> Result<(Bodies<f32>, Vec<[u32; 2]>), Failed> {
+    let mut world = plain_world(scene)?;
+    step_plain(&mut world, scene.dt_secs, steps)?;
     Ok((world.bodies().clone(), world.pairs().to_vec()))
 }
 
-/// [`BroadPhase::find`] without reach, speed or kept lists.
+/// [`BroadPhase::find`] of what is within a margin, metres, without speed or kept lists.
 pub fn find_at(
     lanes: usize,
     broad: &mut BroadPhase<f32>,
     bodies: &Bodies<f32>,
     method: Broad,
+    margin: f32,
 ) -> BroadCounts {
-    at_width!(lanes, broad.find(bodies, method, 0.0, 0.0, false))
+    at_width!(lanes, broad.find(bodies, method, margin, 0.0, false))
 }
 
-/// [`Narrow::run`] without margin.
-pub fn run_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>, pairs: &[[u32; 2]]) {
-    at_width!(lanes, narrow.run(bodies, pairs, 0.0));
+/// [`Narrow::run`] with a margin, metres.
+pub fn run_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>, pairs: &[[u32; 2]], margin: f32) {
+    at_width!(lanes, narrow.run(bodies, pairs, margin));
 }
 
 /// [`Narrow::collide`] without margin.

@@ -187,8 +187,8 @@ pub trait Lanes:
     fn gather_quads(quads: &[[[Self::Elem; ROW]; 4]], index: &[u32]) -> [[Self; ROW]; 4] {
         let rows: &[[Self::Elem; ROW]] = quads.as_flattened();
         let mut at = [0; 16];
-        for (at, index) in at[..Self::WIDTH].iter_mut().zip(index) {
-            *at = index * 4;
+        for (lane, index) in index[..Self::WIDTH].iter().enumerate() {
+            at[lane] = index * 4;
         }
         // A loop: as a closure it was left a call.
         let mut quads = [[Self::zero(); ROW]; 4];

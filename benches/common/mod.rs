@@ -7,10 +7,8 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use lamina2d::lanes::f32s;
+use lamina2d::internals::{PlainWorld, plain_world, step_plain};
 use lamina2d::scene::{Scene, by_name};
-use lamina2d::settings::Settings;
-use lamina2d::world::World;
 
 /// Seconds per step everywhere.
 pub(crate) const DT_SECS: f64 = 1.0 / 60.0;
@@ -25,16 +23,14 @@ pub(crate) fn scene(name: &str) -> Scene {
 }
 
 /// A scene's world before its first step.
-pub(crate) fn world(name: &str) -> World<f32s::X8> {
-    World::from_scene(&scene(name), Settings::default()).expect("a scene that runs")
+pub(crate) fn world(name: &str) -> PlainWorld {
+    plain_world(&scene(name)).expect("a scene that runs")
 }
 
 /// A scene's world after some steps with default settings.
-pub(crate) fn step_through(name: &str, steps: usize) -> World<f32s::X8> {
+pub(crate) fn step_through(name: &str, steps: usize) -> PlainWorld {
     let mut world = world(name);
-    for _ in 0..steps {
-        world.step(DT_SECS).expect("a scene that stays finite");
-    }
+    step_plain(&mut world, DT_SECS, steps).expect("a scene that stays finite");
     world
 }
 
@@ -42,21 +38,21 @@ pub(crate) fn step_through(name: &str, steps: usize) -> World<f32s::X8> {
 #[derive(Debug)]
 pub(crate) struct Settled {
     /// Makes the scene of a name after some steps.
-    make: fn(&str, usize) -> World<f32s::X8>,
+    make: fn(&str, usize) -> PlainWorld,
     worlds: RefCell<Worlds>,
 }
 
 /// By name and steps.
-type Worlds = BTreeMap<(String, usize), Rc<World<f32s::X8>>>;
+type Worlds = BTreeMap<(String, usize), Rc<PlainWorld>>;
 
 impl Settled {
     /// With what makes a scene of a name after some steps, e.g. [`step_through`].
-    pub(crate) fn new(make: fn(&str, usize) -> World<f32s::X8>) -> Self {
+    pub(crate) fn new(make: fn(&str, usize) -> PlainWorld) -> Self {
         Self { make, worlds: RefCell::default() }
     }
 
     /// The scene after `steps` steps with default settings.
-    pub(crate) fn get(&self, name: &str, steps: usize) -> Rc<World<f32s::X8>> {
+    pub(crate) fn get(&self, name: &str, steps: usize) -> Rc<PlainWorld> {
         let mut worlds = self.worlds.borrow_mut();
         let world =
             worlds.entry((name.to_owned(), steps)).or_insert_with(|| Rc::new((self.make)(name, steps)));

@@ -2,17 +2,16 @@
 
 use std::rc::Rc;
 
-use lamina2d::internals::BroadPhase;
-use lamina2d::lanes::{Lanes, f32s};
+use lamina2d::internals::{BroadPhase, PlainWorld, find_at};
+use lamina2d::lanes::Lanes;
 use lamina2d::settings::Broad;
-use lamina2d::world::World;
 
 use super::{Kernel, SIZES, Stage, answer_of, list_widths, margin};
 use crate::common::{Answer, SETTLE_STEPS};
 
 /// Candidate pairs, found anew in each call.
 struct Pairs {
-    world: Rc<World<f32s::X8>>,
+    world: Rc<PlainWorld>,
     method: Broad,
 }
 
@@ -28,7 +27,7 @@ impl Stage for Pairs {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, broad: &mut BroadPhase<f32>) {
-        broad.find::<L>(self.world.bodies(), self.method, margin(), 0.0, false);
+        find_at(L::WIDTH, broad, self.world.bodies(), self.method, margin());
     }
 
     fn answer<L: Lanes<Elem = f32>>(&self, broad: &BroadPhase<f32>) -> Answer {

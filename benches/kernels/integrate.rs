@@ -41,7 +41,8 @@ impl Stage for Flight {
 
     fn run<L: Lanes<Elem = f32>>(&self, bodies: &mut Bodies<f32>) {
         let Self { integrator, ref fields, skips, .. } = *self;
-        internals::fly::<L>(
+        internals::fly_at(
+            L::WIDTH,
             &Plan {
                 integrator,
                 fields,
@@ -53,7 +54,6 @@ impl Stage for Flight {
                 carries: false,
             },
             bodies,
-            None,
         );
     }
 

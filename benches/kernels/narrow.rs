@@ -1,7 +1,7 @@
 //! Manifolds of the pairs of one bucket.
 
 use lamina2d::body::Form;
-use lamina2d::internals::Narrow;
+use lamina2d::internals::{Narrow, run_at};
 use lamina2d::lanes::Lanes;
 
 use super::pile::Pile;
@@ -26,7 +26,7 @@ impl Stage for Bucket {
     }
 
     fn run<L: Lanes<Elem = f32>>(&self, narrow: &mut Narrow<f32>) {
-        narrow.run::<L>(&self.pile.bodies, &self.pairs, margin());
+        run_at(L::WIDTH, narrow, &self.pile.bodies, &self.pairs, margin());
     }
 
     fn answer<L: Lanes<Elem = f32>>(&self, narrow: &Narrow<f32>) -> Answer {

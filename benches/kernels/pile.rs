@@ -3,9 +3,11 @@
 use lamina2d::body::{Bodies, Form};
 use lamina2d::contact::Manifolds;
 use lamina2d::force::{Field, Forces};
-use lamina2d::internals::{BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, SolverContext, Solving};
+use lamina2d::internals::{
+    BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, SolverContext, Solving, find_at, run_at,
+};
 use lamina2d::joint::Joints;
-use lamina2d::lanes::{Lanes, f32s};
+use lamina2d::lanes::Lanes;
 use lamina2d::settings::{Broad, Integrator, Skips, Solver};
 
 use super::{TRAITS, margin};
@@ -33,8 +35,8 @@ impl Pile {
         bodies.refresh_polygons();
         let (mut broad, mut narrow) = (BroadPhase::default(), Narrow::default());
         broad.keep_apart(joints.apart());
-        broad.find::<f32s::X8>(&bodies, Broad::Auto, margin(), 0.0, false);
-        narrow.run::<f32s::X8>(&bodies, broad.pairs(), margin());
+        find_at(8, &mut broad, &bodies, Broad::Auto, margin());
+        run_at(8, &mut narrow, &bodies, broad.pairs(), margin());
         Self { pairs: broad.pairs().to_vec(), bodies, joints, narrow, fields: Forces::gravity().fields() }
     }
 

@@ -19,6 +19,7 @@
 
 mod skips;
 
+use lamina2d::internals::as_simulation;
 use lamina2d::scene::mixes::Mix;
 use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skips, Solver};
 use lamina2d::simulation::Simulation;
@@ -84,7 +85,8 @@ impl Case {
 
     /// The state from which steps are measured.
     pub(crate) fn start(&self, settled: &Settled, lanes: usize) -> Box<dyn Simulation> {
-        let world: &dyn Simulation = &*settled.get(&self.scene, self.settle_steps);
+        let settled = settled.get(&self.scene, self.settle_steps);
+        let world = as_simulation(&settled);
         let settings = Settings { lanes, ..self.settings };
         let mut world = world.with_settings(settings).expect("settings that run");
         (0..self.further_steps).for_each(|_| step(world.as_mut()));

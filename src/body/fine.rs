@@ -29,6 +29,7 @@ impl<R: Real> Bodies<R> {
     }
 
     /// The centroid of the body in a slot, metres.
+    #[inline]
     pub fn place(&self, slot: usize) -> [f64; 2] {
         let [x, y] = [self.x[slot].to_f64(), self.y[slot].to_f64()];
         match &self.fine {

@@ -53,6 +53,6 @@ impl<R: Real> Polygons<R> {
 
     /// The largest number of vertices of any polygon; 0 without polygons.
     pub fn max_count(&self) -> usize {
-        self.count.iter().copied().max().unwrap_or(0).into()
+        self.count.iter().fold(0, |most, count| most.max(*count)).into()
     }
 }

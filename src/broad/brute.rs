@@ -15,12 +15,14 @@ pub(super) fn find<L: Lanes>(circles: &Circles<L::Elem>, pairs: &mut Vec<[u32; 2
         let first = (a + 1) / L::WIDTH;
         // Lanes up to `a` itself belong to earlier rows.
         let mut later = !0u32 << ((a + 1) % L::WIDTH);
-        for (k, ((&bx, &by), &br)) in xs[first..].iter().zip(&ys[first..]).zip(&rs[first..]).enumerate() {
-            let hits = super::meet(x, y, r, bx, by, br).bits() & later;
+        for chunk in first..chunks {
+            let hits = super::meet(x, y, r, xs[chunk], ys[chunk], rs[chunk]).bits() & later;
             later = !0;
             if hits != 0 {
-                let slots = &circles.slot[(first + k) * L::WIDTH..];
-                pairs.extend(set_lanes(hits).map(|lane| [slot, slots[lane]]));
+                let slots = &circles.slot[chunk * L::WIDTH..];
+                for lane in set_lanes(hits) {
+                    pairs.push([slot, slots[lane]]);
+                }
             }
         }
     }

@@ -320,10 +320,12 @@ impl<R: Real> BroadPhase<R> {
         self.pairs.truncate(kept);
         if !self.apart.is_empty() {
             // Both lists are in order: one walk along both.
-            let mut apart = self.apart.iter().copied().peekable();
-            self.pairs.retain(|pair| {
-                while apart.next_if(|next| next < pair).is_some() {}
-                apart.peek() != Some(pair)
+            let mut apart = self.apart.as_slice();
+            self.pairs.retain(|&[a, b]| {
+                while apart.first().is_some_and(|&[c, d]| (c, d) < (a, b)) {
+                    apart = &apart[1..];
+                }
+                apart.first() != Some(&[a, b])
             });
         }
     }

@@ -80,6 +80,7 @@ impl<R: Real> PairTable<R> {
         u64::from(a.min(b)) << 32 | u64::from(a.max(b))
     }
 
+    #[inline]
     pub(super) fn clear_place(&mut self, at: usize, code: R) {
         self.code[at] = code;
         self.geometry.rows_mut()[at] = [R::ZERO; ROW];
@@ -88,6 +89,7 @@ impl<R: Real> PairTable<R> {
         self.home[at] = Home::NONE;
     }
 
+    #[inline]
     pub(super) fn take_place(&mut self, at: usize, old: &Self, old_at: usize) {
         self.code[at] = old.code[old_at];
         self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];

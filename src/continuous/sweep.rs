@@ -71,6 +71,7 @@ impl Sweep {
     }
 
     /// Do the bounding circles meet on their way?
+    #[inline]
     pub(super) fn may_meet(&self, other: &Self, reach: &Reach) -> bool {
         let (from, way) = (other.x - self.x, other.moved - self.moved);
         let length_squared = way.length_squared();
@@ -91,6 +92,7 @@ impl Sweep {
     }
 
     /// What is left of the way from a time on.
+    #[inline]
     pub(super) fn after(&self, t: f64) -> Self {
         // Where nothing has met anything yet all of it is left, and no attitude to be turned.
         if t == 0.0 {
@@ -105,6 +107,7 @@ impl Sweep {
         }
     }
 
+    #[inline]
     pub(super) fn at(&self, t: f64) -> Placed {
         let rot = self.rot.turned(self.angle * t);
         let turned = |v: DVec2| {
@@ -153,12 +156,20 @@ impl Wall {
 
 impl Placed {
     /// How far the shape reaches from its centre along `axis`.
+    #[inline]
     pub(super) fn extent(&self, axis: DVec2) -> f64 {
-        let corners = self.corners().iter().map(|v| axis.dot(*v));
-        if self.count == 0 { self.disc } else { corners.fold(f64::MIN, f64::max) }
+        if self.count == 0 {
+            return self.disc;
+        }
+        let mut extent = f64::MIN;
+        for corner in self.corners() {
+            extent = extent.max(axis.dot(*corner));
+        }
+        extent
     }
 
     /// Outward unit normals of the faces.
+    #[inline]
     pub(super) fn normals(&self) -> impl Iterator<Item = DVec2> + '_ {
         let next = self.corners().iter().cycle().skip(1);
         self.corners().iter().zip(next).map(|(&p, &q)| -(q - p).perp().normalize())

@@ -196,7 +196,9 @@ fn fly_with<L: Lanes, S: Scheme>(
             skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
         } else {
             turn_block(bodies, at..at + BLOCK, &angle);
-            bodies.w.lanes_mut::<L>()[at..at + BLOCK].copy_from_slice(&w);
+            for (i, spin) in bodies.w.lanes_mut::<L>()[at..at + BLOCK].iter_mut().enumerate() {
+                *spin = w[i];
+            }
         }
         if is_fine {
             move_finely(bodies, at, moved);
@@ -332,13 +334,14 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
     let (h, per_h) = (Step::<L>::new(plan.h_secs).h, L::lit(1.0 / plan.h_secs));
     let per_share = L::lit(1.0 / plan.impulse_share());
     let mut doubtful = L::zero();
-    let runs = std::mem::take(&mut motion.runs);
-    for at in lanes_in::<L>(&runs) {
+    // Slices once: in the loop they would be looked up again after every store.
+    let columns = [0, 1, 2].each(|k| (motion.free[k].lanes::<L>(), motion.ahead[k].lanes::<L>()));
+    for at in lanes_in::<L>(&motion.runs) {
         let row = load_four::<L>(&motion.velocity, at);
         let mut velocity = row;
         let mut moved = [L::zero(); 4];
         for k in 0..3 {
-            let (free, ahead) = (motion.free[k].lanes::<L>()[at], motion.ahead[k].lanes::<L>()[at]);
+            let (free, ahead) = (columns[k].0[at], columns[k].1[at]);
             let base = if plan.moving { ahead * per_h } else { free };
             let change = row[k] - base;
             velocity[k] = free + change * per_share;
@@ -355,7 +358,6 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
         store_four::<L>(&mut motion.velocity, at, velocity);
         store_four::<L>(&mut motion.moved, at, moved);
     }
-    motion.runs = runs;
     !(!doubtful.equals(L::zero())).any()
 }
 

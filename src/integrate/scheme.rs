@@ -16,6 +16,7 @@ pub(crate) struct Step<L> {
 
 impl<L: Lanes> Step<L> {
     /// Of a step of `h_secs`.
+    #[inline]
     pub(crate) fn new(h_secs: f64) -> Self {
         let h = L::Elem::from_f64(h_secs);
         let half = L::Elem::from_f64(0.5);

@@ -26,6 +26,18 @@ macro_rules! least {
     };
 }
 
+/// The first `N` values. Not `copy_from_slice`: what that calls is not inlined, and copies a length it does not know.
+#[inline(always)]
+fn first<T, const N: usize>(from: &[T]) -> &[T; N] {
+    from.first_chunk().unwrap_or_else(|| panic!("{N} values are asked of {}", from.len()))
+}
+
+#[inline(always)]
+fn first_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
+    let len = to.len();
+    to.first_chunk_mut().unwrap_or_else(|| panic!("{N} values are to go into {len}"))
+}
+
 macro_rules! vector_lanes {
     ($v:ty, $t:ty, $n:literal, $gather:ident, $scatter:ident, $gather_fours:ident, $scatter_fours:ident) => {
         impl LaneMask for Mask<$v> {
@@ -66,13 +78,11 @@ macro_rules! vector_lanes {
             }
             #[inline(always)]
             fn load(from: &[$t]) -> Self {
-                let mut lanes = [0.0; $n];
-                lanes.copy_from_slice(&from[..$n]);
-                <$v>::new(lanes)
+                <$v>::new(*first(from))
             }
             #[inline(always)]
             fn store(self, to: &mut [$t]) {
-                to[..$n].copy_from_slice(self.as_array());
+                *first_mut(to) = *self.as_array();
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -155,8 +165,8 @@ fn gather_f32x8(rows: &[[f32; ROW]], index: &[u32]) -> [f32x8; ROW] {
 #[inline(always)]
 fn store_f32x8(from: [f32x8; ROW], to: &mut [[f32; ROW]]) {
     let rows = f32x8::transpose(from);
-    for (row, out) in rows.iter().zip(&mut to[..8]) {
-        *out = *row.as_array();
+    for (lane, out) in to[..8].iter_mut().enumerate() {
+        *out = *rows[lane].as_array();
     }
 }
 
@@ -195,8 +205,8 @@ macro_rules! four_rows {
             let low = <$v>::transpose([from[0], from[1], from[2], from[3]]);
             let high = <$v>::transpose([from[4], from[5], from[6], from[7]]);
             for (lane, out) in to[..4].iter_mut().enumerate() {
-                out[..4].copy_from_slice(low[lane].as_array());
-                out[4..].copy_from_slice(high[lane].as_array());
+                *first_mut(out) = *low[lane].as_array();
+                *first_mut(&mut out[4..]) = *high[lane].as_array();
             }
         }
     };

@@ -32,12 +32,14 @@ pub(crate) fn lanes_of<L: Lanes>(run: &Range<usize>) -> Range<usize> {
 }
 
 /// First lane value of each block in a run of slots.
+#[inline]
 pub(crate) fn block_starts<L: Lanes>(run: Range<usize>) -> impl Iterator<Item = usize> {
     lanes_of::<L>(&run).step_by(BLOCK)
 }
 
 /// First lane value of each block in some runs of slots, and the end of the lane values in use. What lies behind those is
 /// padding, which a world of one body would have more of than of anything else.
+#[inline]
 pub(crate) fn blocks_in<L: Lanes>(runs: &[Range<usize>]) -> impl Iterator<Item = (usize, usize)> {
     let of = |run: Range<usize>| {
         let end = lanes_of::<L>(&run).end;

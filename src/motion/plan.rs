@@ -34,6 +34,7 @@ impl<R: Real> Plan<'_, R> {
     }
 
     /// Does the scheme collapse to its closed form?
+    #[inline]
     pub fn collapses(&self) -> bool {
         let staged = !matches!(self.integrator, Integrator::ExplicitEuler | Integrator::SemiImplicitEuler);
         staged && self.skips.has(Skip::ClosedForm) && self.fields.iter().all(Field::is_constant)
@@ -41,6 +42,7 @@ impl<R: Real> Plan<'_, R> {
 
     /// Must the stages of all bodies be in step? They are within a block, so all bodies are then one block of the
     /// widest lanes, whatever the width; no width changes a bit.
+    #[inline]
     pub fn couples(&self) -> bool {
         self.fields.iter().any(Field::couples)
     }

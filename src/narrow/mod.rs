@@ -272,14 +272,14 @@ impl<R: Real> Narrow<R> {
     }
 
     /// All manifolds, and the places of the pairs last looked at.
-    pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = u32>) {
+    pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = &[u32]>) {
         (&mut self.manifolds, looked_at(&self.todo, &self.seamed))
     }
 
     /// The deepest overlap of the pairs last looked at, negative, metres; 0 where there is none. Read out of what was
     /// found, as few steps ask (noted while looking it cost all of them 2 to 7 % of this phase).
     pub fn deepest(&self) -> f64 {
-        let places = looked_at(&self.todo, &self.seamed).map(|place| place as usize);
+        let places = looked_at(&self.todo, &self.seamed).flatten().map(|&place| place as usize);
         let gaps = places.flat_map(|at| &self.manifolds.gaps()[at][..self.manifolds.code(at).points()]);
         gaps.fold(0.0, |least, gap| gap.to_f64().min(least))
     }
@@ -394,16 +394,16 @@ impl<R: Real> Narrow<R> {
     }
 }
 
-fn looked_at<'a>(todo: &'a [Todo; 6], seamed: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-    todo.iter().flat_map(|todo| &todo.place[..todo.len]).chain(seamed).copied()
+fn looked_at<'a>(todo: &'a [Todo; 6], seamed: &'a [u32]) -> impl Iterator<Item = &'a [u32]> {
+    todo.iter().map(|todo| &todo.place[..todo.len]).chain(std::iter::once(seamed))
 }
 
 /// Where the polygons of `WIDTH` bodies are; the world, in padding lanes, has polygon 0 and is masked away.
 #[inline(always)]
 fn polygon_index<L: Lanes, R: Real>(bodies: &Bodies<R>, slots: &[u32]) -> [u32; 16] {
     let mut index = [0; 16];
-    for (index, &slot) in index[..L::WIDTH].iter_mut().zip(slots) {
-        *index = bodies.shapes(slot as usize).start as u32;
+    for (lane, &slot) in slots[..L::WIDTH].iter().enumerate() {
+        index[lane] = bodies.shapes(slot as usize).start as u32;
     }
     index
 }

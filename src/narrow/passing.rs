@@ -7,6 +7,7 @@
 //! come no nearer to a corner than its margin in a step.
 
 use crate::body::{Bodies, BodyKind, Form};
+use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
 /// How a step moves what is free.
@@ -32,13 +33,13 @@ pub(super) fn staying<L: Lanes>(
     let separations = separations.to_array();
     let mut passing = [L::Elem::ZERO; 16];
     for lane in crate::lanes::set_lanes(lanes) {
-        let ends = [0, 1].map(|end| slots[end][lane] as usize);
+        let ends = [0, 1].each(|end| slots[end][lane] as usize);
         if pass(bodies, ends, separations[lane].to_f64(), stride) {
             passing[lane] = L::Elem::ONE;
         }
     }
     let stays = L::load(&passing).le(L::zero());
-    hits.map(|hits| hits & stays)
+    hits.each(|hits| hits & stays)
 }
 
 /// Do two bodies, `separation` metres apart, pass each other within a step?
@@ -51,7 +52,7 @@ fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride
     };
     let [wx, wy] = [way(&bodies.vx, 0), way(&bodies.vy, 1)];
     let length = wx.hypot(wy);
-    let turned = [a, b].map(|slot| turning(bodies, slot) * secs);
+    let turned = [a, b].each(|slot| turning(bodies, slot) * secs);
     // What does not come that far closes nothing, and where it goes says nothing: resting bodies tremble.
     if length <= separation {
         return false;
@@ -60,9 +61,9 @@ fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride
     let ([ax, ay], [bx, by]) = (bodies.place(a), bodies.place(b));
     let apart = ((bx - ax) * across[0] + (by - ay) * across[1]).abs();
     let side = if (bx - ax) * across[0] + (by - ay) * across[1] < 0.0 { -1.0 } else { 1.0 };
-    let along = across.map(|way| way * side);
+    let along = across.each(|way| way * side);
     // From A towards B, and from B towards A.
-    let shadows = extent(bodies, a, along) + extent(bodies, b, along.map(|way| -way));
+    let shadows = extent(bodies, a, along) + extent(bodies, b, along.each(|way| -way));
     apart > shadows + turned[0] + turned[1]
 }
 

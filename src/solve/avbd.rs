@@ -170,8 +170,9 @@ impl<L: Lanes> Seen<L> {
         let [s0, s1, friction, _] = L::gather_fours(manifolds.gaps(), places);
         let [j0, j1, jt, k] = L::gather_fours(manifolds.impulses(), places);
         let mut exists = [L::Elem::ZERO; 16];
-        for (exists, &place) in exists[..L::WIDTH].iter_mut().zip(places) {
-            *exists = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
+        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
+            exists[lane] =
+                if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
         }
         let exists = L::load(&exists);
         let normal = Vec2::new(nx, ny);

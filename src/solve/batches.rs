@@ -162,27 +162,32 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
     }
 
     /// What a lane holds.
+    #[inline]
     pub(super) fn lane(&self, lane: u32) -> LaneValues<L::Elem> {
         self.constraints[lane as usize / L::WIDTH].lane(lane as usize % L::WIDTH)
     }
 
     /// Impulses of a lane: of both points, along the tangent, –; N·s.
+    #[inline]
     pub(super) fn impulses(&self, lane: u32) -> [L::Elem; 4] {
         self.constraints[lane as usize / L::WIDTH].impulses(lane as usize % L::WIDTH)
     }
 
     /// Changes the impulses of a lane that is to be prepared; N·s.
+    #[inline]
     pub(super) fn set_impulses(&mut self, lane: u32, row: [L::Elem; 4]) {
         self.constraints[lane as usize / L::WIDTH].set_impulses(lane as usize % L::WIDTH, row);
         self.touch(lane);
     }
 
     /// Changes what a lane holds.
+    #[inline]
     pub(super) fn set_lane(&mut self, lane: u32, values: &LaneValues<L::Elem>) {
         self.constraints[lane as usize / L::WIDTH].set_lane(lane as usize % L::WIDTH, values);
     }
 
     /// Have a lane's gaps heard of the last displacements, because it was prepared after them?
+    #[inline]
     pub(super) fn is_fresh(&self, lane: u32) -> bool {
         self.fresh[lane as usize / L::WIDTH]
     }
@@ -215,14 +220,19 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
 
     #[inline(always)]
     pub(super) fn visit(&mut self, visitor: &mut impl Visit<L>, base: usize) {
-        for at in 0..self.len() {
+        let count = self.len();
+        // Slices once: in the loop they would be looked up again after every store.
+        let (constraints, fresh) = (&mut self.constraints[..count], &self.fresh[..count]);
+        let slots = [&self.a, &self.b].each(Vec::as_slice);
+        for at in 0..count {
             // In full: handed out by a function, arrays cost a pass 6 % and more.
-            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+            let [of_a, of_b] = slots.each(|of| &of[at * L::WIDTH..][..L::WIDTH]);
             let (mut a, mut b) = ([0; 16], [0; 16]);
-            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
-            b[..L::WIDTH].copy_from_slice(&self.b[lanes]);
-            let ends = Ends { a: &a, b: &b, fresh: self.fresh[at] };
-            visitor.visit(&mut self.constraints[at], ends, base + at);
+            for lane in 0..L::WIDTH {
+                (a[lane], b[lane]) = (of_a[lane], of_b[lane]);
+            }
+            let ends = Ends { a: &a, b: &b, fresh: fresh[at] };
+            visitor.visit(&mut constraints[at], ends, base + at);
         }
     }
 
@@ -259,10 +269,11 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
 /// Slots of one batch.
 #[inline(always)]
 fn ends_of<L: Lanes>([of_a, of_b]: [&[u32]; 2], at: usize) -> ([u32; 16], [u32; 16]) {
-    let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+    let [of_a, of_b] = [of_a, of_b].each(|of| &of[at * L::WIDTH..][..L::WIDTH]);
     let (mut a, mut b) = ([0; 16], [0; 16]);
-    a[..L::WIDTH].copy_from_slice(&of_a[lanes.clone()]);
-    b[..L::WIDTH].copy_from_slice(&of_b[lanes]);
+    for lane in 0..L::WIDTH {
+        (a[lane], b[lane]) = (of_a[lane], of_b[lane]);
+    }
     (a, b)
 }
 
@@ -277,8 +288,9 @@ fn parts<L: Lanes, const POINTS: usize>(
 ) -> Parts<L> {
     let mut two_points = [L::Elem::ZERO; 16];
     if POINTS == 2 {
-        for (two, &place) in two_points[..L::WIDTH].iter_mut().zip(places) {
-            *two = if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
+        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
+            two_points[lane] =
+                if manifolds.code(place as usize).points() == 2 { L::Elem::ONE } else { L::Elem::ZERO };
         }
     }
     let masses = |slots: &[u32; 16]| {

@@ -178,10 +178,11 @@ pub(crate) struct NoteApproach<'a, L: Lanes> {
 impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
-        let sides = |rows: &[[L::Elem; 4]]| (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
-        let (a, b) = sides(self.rows);
-        let (pull_a, pull_b) = sides(self.accelerations);
-        let (speeds, pulls) = (Normals::begin(c, &a, &b), Normals::begin(c, &pull_a, &pull_b));
+        let normals = |rows: &[[L::Elem; 4]]| {
+            let (a, b) = (Side::gather(rows, ends.a), Side::gather(rows, ends.b));
+            Normals::begin(c, &a, &b)
+        };
+        let (speeds, pulls) = (normals(self.rows), normals(self.accelerations));
         let zero = L::zero();
         let gaps = gaps(c, &ends, self.moved.filter(|_| !ends.fresh));
         for ((point, gap), noted) in c.points.iter().zip(gaps).zip(self.bounces.at::<POINTS>(at)) {
@@ -363,6 +364,9 @@ fn gaps<L: Lanes, const POINTS: usize>(
     ends: &Ends<'_>,
     moved: Option<&[[L::Elem; 4]]>,
 ) -> [L; POINTS] {
-    let change = moved.map_or([L::zero(); POINTS], |moved| c.change_by(moved, ends));
+    let mut change = [L::zero(); POINTS];
+    if let Some(moved) = moved {
+        change = c.change_by(moved, ends);
+    }
     crate::each::indexed(|k| c.points[k].separation + change[k])
 }

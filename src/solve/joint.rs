@@ -85,6 +85,7 @@ pub(super) struct Stiffness<L> {
 
 impl<L: Lanes> Stiffness<L> {
     /// Of `soft`: see the module's head.
+    #[inline]
     pub(super) fn soft(h_secs: f64, share: f64) -> Self {
         let (bias_rate, mass_scale) = soft::coefficients(h_secs, HERTZ_TIMES_SUBSTEP / h_secs, DAMPING);
         Self::new(h_secs, share, bias_rate, mass_scale)
@@ -131,6 +132,7 @@ struct Swing<L> {
 }
 
 impl<L: Lanes> Swing<L> {
+    #[inline]
     fn none() -> Self {
         Self { force: Vec2::zero(), torque: [L::zero(); 2] }
     }
@@ -226,10 +228,11 @@ fn set_lane<L: Lanes>(of: &mut [L; 2], lane: usize, values: [f64; 2]) {
 }
 
 /// One lane per item, the rest zeros.
+#[inline]
 fn lanes<L: Lanes, T>(items: &[T], of: impl Fn(&T) -> L::Elem) -> L {
     let mut values = [L::Elem::ZERO; 16];
-    for (value, item) in values.iter_mut().zip(items) {
-        *value = of(item);
+    for (lane, item) in items.iter().enumerate() {
+        values[lane] = of(item);
     }
     L::load(&values)
 }

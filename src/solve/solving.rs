@@ -197,10 +197,10 @@ impl<L: Lanes> Solving<L> {
 
     /// Makes constraints of the manifolds looked at; contacts that have come get a place first. `changed`: which pairs touch
     /// has, or with how many points.
-    pub fn prepare(
+    pub fn prepare<'a>(
         &mut self,
         bodies: &Bodies<L::Elem>,
-        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = u32>),
+        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = &'a [u32]>),
         changed: bool,
         motion: &Motion<L::Elem>,
     ) {
@@ -209,7 +209,11 @@ impl<L: Lanes> Solving<L> {
             self.stream.arrange(bodies, manifolds, &self.substep_groups);
         }
         let homes = manifolds.homes();
-        looked_at.for_each(|place| self.stream.touch(homes[place as usize]));
+        for places in looked_at {
+            for &place in places {
+                self.stream.touch(homes[place as usize]);
+            }
+        }
         let moved = self.behind.then_some(motion.moved.fours());
         self.stream.prepare(manifolds, motion.inverse_masses.fours(), moved);
         if !self.behind {

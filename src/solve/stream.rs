@@ -53,18 +53,22 @@ impl<L: Lanes> Default for List<L> {
 }
 
 impl<L: Lanes> List<L> {
+    #[inline]
     fn lane(&self, home: Home) -> LaneValues<L::Elem> {
         if home.two { self.two.lane(home.lane) } else { self.one.lane(home.lane) }
     }
+    #[inline]
     fn impulses(&self, home: Home) -> [L::Elem; 4] {
         if home.two { self.two.impulses(home.lane) } else { self.one.impulses(home.lane) }
     }
+    #[inline]
     fn slots(&self, home: Home) -> [u32; 2] {
         if home.two { self.two.slots(home.lane) } else { self.one.slots(home.lane) }
     }
     fn is_stale(&self, home: Home) -> bool {
         if home.two { self.two.is_stale(home.lane) } else { self.one.is_stale(home.lane) }
     }
+    #[inline]
     fn is_fresh(&self, home: Home) -> bool {
         if home.two { self.two.is_fresh(home.lane) } else { self.one.is_fresh(home.lane) }
     }
@@ -77,6 +81,7 @@ impl<L: Lanes> List<L> {
         }
     }
     /// Gives a lane these impulses, N·s; it is to be prepared.
+    #[inline]
     fn set_impulses(&mut self, home: Home, row: [L::Elem; 4]) {
         if home.two {
             self.two.set_impulses(home.lane, row);

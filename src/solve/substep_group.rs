@@ -122,6 +122,7 @@ impl<R: Real> SubstepGroups<R> {
         &self.index
     }
     /// The substep group of a pair that touches. What nothing moves has the first.
+    #[inline]
     pub fn of_pair(&self, slots: [u32; 2]) -> usize {
         if self.count() == 1 {
             return 0;

@@ -1,7 +1,7 @@
 //! Statistics of timings.
 
 use serde::Serialize;
-use statrs::statistics::{Data, Distribution, Min, OrderStatistics};
+use statrs::statistics::{Data, Distribution, Min, OrderStatistics, Statistics as _};
 
 /// Of many steps, ms per step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -42,8 +42,14 @@ pub(crate) fn quantile(samples: &[f64], share: f64) -> f64 {
 /// The exponent p of y ∝ xᵖ, by least squares on logarithms; `None` below two points.
 pub fn fitted_exponent(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
-    let fit: Result<(f64, f64), _> = linreg::linear_regression_of(&logs);
-    fit.ok().map(|(slope, _)| slope)
+    fitted_line(&logs).map(|[slope, _]| slope)
+}
+
+/// Slope of the least-squares line through points, and its value at 0; `None` where they have fewer than two places.
+pub(crate) fn fitted_line(points: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let [x, y] = [|point: &(f64, f64)| point.0, |point: &(f64, f64)| point.1].map(|of| points.iter().map(of));
+    let slope = x.clone().population_covariance(y.clone()) / x.clone().population_variance();
+    slope.is_finite().then(|| [slope, y.mean() - slope * x.mean()])
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use statrs::statistics::{Data, Distribution, OrderStatistics};
 
+use crate::present::timing::fitted_line;
+
 /// How fast a small difference grows, and until when a course can be compared with another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
@@ -21,7 +23,7 @@ impl Growth {
         if points.len() < 3 {
             return None;
         }
-        let (rate, at_zero): (f64, f64) = linreg::linear_regression_of(&points).ok()?;
+        let [rate, at_zero] = fitted_line(&points)?;
         Some(Self { rate: rate.max(0.0), start: at_zero.exp() })
     }
 

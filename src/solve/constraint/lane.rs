@@ -35,6 +35,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     }
 
     /// What one lane holds; see [`LaneValues`].
+    #[inline]
     pub(in crate::solve) fn lane(&self, k: usize) -> LaneValues<L::Elem> {
         let mut lane = self.values().each(|value| cast_slice::<L, L::Elem>(std::slice::from_ref(value))[k]);
         if POINTS == 1 {
@@ -55,9 +56,9 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     pub(in crate::solve) fn set_impulses(&mut self, k: usize, row: [L::Elem; 4]) {
         let put =
             |value: &mut L, to: L::Elem| cast_slice_mut::<L, L::Elem>(std::slice::from_mut(value))[k] = to;
-        for (point, impulse) in self.points.iter_mut().zip(row) {
+        for (at, point) in self.points.iter_mut().enumerate() {
             put(&mut point.mass, L::Elem::ONE);
-            put(&mut point.velocity_impulse, impulse);
+            put(&mut point.velocity_impulse, row[at]);
         }
         put(&mut self.tangent_impulse, row[2]);
     }

@@ -67,12 +67,16 @@ impl<C> Batches<C> {
 
     #[inline(always)]
     fn each<L: Lanes>(&mut self, batches: Range<usize>, mut pass: impl FnMut(&mut C, Joined<'_>)) {
+        // Slices once: in the loop they would be looked up again after every store.
+        let links = self.links.as_mut_slice();
+        let lists = [&self.place, &self.a, &self.b].each(Vec::as_slice);
         for at in batches {
-            let lanes = at * L::WIDTH..(at + 1) * L::WIDTH;
+            let [place, of_a, of_b] = lists.each(|of| &of[at * L::WIDTH..][..L::WIDTH]);
             let (mut a, mut b) = ([0; MOST], [0; MOST]);
-            a[..L::WIDTH].copy_from_slice(&self.a[lanes.clone()]);
-            b[..L::WIDTH].copy_from_slice(&self.b[lanes.clone()]);
-            pass(&mut self.links[at], Joined { place: &self.place[lanes], a: &a, b: &b });
+            for lane in 0..L::WIDTH {
+                (a[lane], b[lane]) = (of_a[lane], of_b[lane]);
+            }
+            pass(&mut links[at], Joined { place, a: &a, b: &b });
         }
     }
 

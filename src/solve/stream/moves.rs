@@ -246,12 +246,14 @@ fn is_overflow(home: Home) -> bool {
 }
 
 /// Impulses of a lane as a pair's row, N·s.
+#[inline]
 pub(super) fn impulses_of<R: Real>(values: &LaneValues<R>) -> [R; 4] {
     let normal = |k: usize| values[at::VELOCITY_IMPULSE[k]] * values[at::MASS[k]];
     [normal(0), normal(1), values[at::TANGENT_IMPULSE], R::ZERO]
 }
 
 /// Writes gaps and impulses of a lane to a pair's rows.
+#[inline]
 pub(super) fn write<R: Real>(manifolds: &mut Manifolds<R>, place: usize, values: &LaneValues<R>) {
     const { assert!(impulse::NORMAL == 0 && impulse::TANGENT == 2) };
     manifolds.impulses_mut()[place] = impulses_of(values);

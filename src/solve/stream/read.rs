@@ -4,21 +4,24 @@
 use super::moves::{impulses_of, write};
 use super::{LaneValues, Stream, at};
 use crate::contact::{ContactRow, Home, Manifolds};
+use crate::each::Each as _;
 use crate::lanes::Lanes;
 
 impl<L: Lanes> Stream<L> {
     /// What a lane holds.
+    #[inline]
     pub(super) fn lane(&self, home: Home) -> LaneValues<L::Elem> {
         self.lists[home.list as usize].lane(home)
     }
 
     /// What a lane holds, with gaps that have heard of `moved`.
+    #[inline]
     fn read(&self, home: Home, slots: [u32; 2], moved: Option<&[[L::Elem; 4]]>) -> LaneValues<L::Elem> {
         let mut values = self.lane(home);
         let fresh = self.lists[home.list as usize].is_fresh(home);
         if let Some(moved) = moved.filter(|_| !fresh) {
             // As `Constraint::gap_change` reckons, to the bit.
-            let [a, b] = slots.map(|slot| moved[slot as usize]);
+            let [a, b] = slots.each(|slot| moved[slot as usize]);
             let along = (b[0] - a[0]) * values[0] + (b[1] - a[1]) * values[1];
             for (levers, separation) in [10, 15].into_iter().zip(at::SEPARATION) {
                 let change = along + (b[2] * values[levers + 1] - a[2] * values[levers]);

@@ -52,7 +52,7 @@ impl Record for Row {
 struct Case {
     kernel: &'static str,
     scene: &'static str,
-    steps: u64,
+    steps: usize,
 }
 
 const CASES: [Case; 7] = [
@@ -118,7 +118,7 @@ fn broad(lanes: usize, bodies: Bodies<f32>, method: Broad) -> Box<dyn FnMut() ->
     // What one lane would test: each body against all later ones, or, with a grid, its candidates.
     let all = bodies.live() * (bodies.live() - 1) / 2;
     Box::new(move || {
-        let counts = internals::find_at(lanes, &mut broad, &bodies, method);
+        let counts = internals::find_at(lanes, &mut broad, &bodies, method, 0.0);
         if method == Broad::Brute { all } else { counts.candidates }
     })
 }
@@ -141,7 +141,7 @@ fn narrow(
     pairs.retain(|pair| pair.iter().all(|&slot| bodies.form(slot as usize) == form));
     let mut narrow = Narrow::default();
     // The kernel alone: pairs are dealt into buckets once, as they are while a list serves.
-    internals::run_at(lanes, &mut narrow, &bodies, &pairs);
+    internals::run_at(lanes, &mut narrow, &bodies, &pairs, 0.0);
     Box::new(move || {
         internals::collide_at(lanes, &mut narrow, &bodies);
         std::hint::black_box(&narrow.manifolds);
