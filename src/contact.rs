@@ -422,8 +422,11 @@ impl<R: Real> Manifolds<R> {
             let one = R::from_f64(65536.0);
             let codes = &self.now.code.as_slice()[..self.now.ends[5]];
             self.touching.clear();
-            let places = codes.iter().enumerate().filter(|(_, code)| **code >= one);
-            self.touching.extend(places.map(|(at, _)| at as u32));
+            for (at, code) in codes.iter().enumerate() {
+                if *code >= one {
+                    self.touching.push(at as u32);
+                }
+            }
         }
         changed
     }

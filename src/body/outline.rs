@@ -34,7 +34,9 @@ impl<R: Real> Bodies<R> {
             Form::Circle => 0,
             Form::Box => {
                 let (hx, hy) = (self.extent_x[slot].to_f64(), self.extent_y[slot].to_f64());
-                corners[..4].copy_from_slice(&[(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].map(DVec2::from));
+                for (k, (x, y)) in [(-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)].into_iter().enumerate() {
+                    corners[k] = DVec2::new(x, y);
+                }
                 4
             }
             Form::Polygon => {

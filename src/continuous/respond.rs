@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::body::{Bodies, Placed};
+use crate::each::Each as _;
 use crate::lanes::Real;
 
 /// A body's motion at an instant.
@@ -14,7 +15,7 @@ pub(super) struct Motion {
 
 impl Motion {
     pub(super) fn of<R: Real>(bodies: &Bodies<R>, slot: usize) -> Self {
-        let [x, y, spin] = [&bodies.vx, &bodies.vy, &bodies.w].map(|column| column[slot].to_f64());
+        let [x, y, spin] = [&bodies.vx, &bodies.vy, &bodies.w].each(|column| column[slot].to_f64());
         Self { velocity: DVec2::new(x, y), spin }
     }
 
@@ -55,15 +56,15 @@ pub(super) fn collide<R: Real>(
 ) -> bool {
     let [a, b] = motions;
     let point = meeting_point(placed[0], placed[1], axis);
-    let arms = placed.map(|placed| point - placed.centre);
-    let [ma, mb] = slots.map(|slot| bodies.inv_mass[slot].to_f64());
-    let [ia, ib] = slots.map(|slot| bodies.inv_inertia[slot].to_f64());
+    let arms = placed.each(|placed| point - placed.centre);
+    let [ma, mb] = slots.each(|slot| bodies.inv_mass[slot].to_f64());
+    let [ia, ib] = slots.each(|slot| bodies.inv_inertia[slot].to_f64());
     let least = |column: &crate::column::Column<R>| {
-        let [first, second] = slots.map(|slot| column[slot].to_f64());
+        let [first, second] = slots.each(|slot| column[slot].to_f64());
         first.min(second)
     };
     let response = |way: DVec2| {
-        let [la, lb] = arms.map(|arm| arm.perp_dot(way));
+        let [la, lb] = arms.each(|arm| arm.perp_dot(way));
         ma + mb + ia * la * la + ib * lb * lb
     };
     let give = |a: &mut Motion, b: &mut Motion, impulse: DVec2| {

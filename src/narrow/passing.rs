@@ -82,5 +82,9 @@ fn extent<R: Real>(bodies: &Bodies<R>, slot: usize, along: [f64; 2]) -> f64 {
     if placed.count == 0 {
         return placed.disc;
     }
-    placed.corners().iter().map(|corner| corner.x * along[0] + corner.y * along[1]).fold(f64::MIN, f64::max)
+    let mut extent = f64::MIN;
+    for corner in placed.corners() {
+        extent = extent.max(corner.x * along[0] + corner.y * along[1]);
+    }
+    extent
 }

@@ -209,6 +209,7 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
     }
 
     /// The place that is no pair is another.
+    #[inline]
     pub(super) fn rename_padding(&mut self, padding: u32) {
         self.place[self.used..].fill(padding);
     }

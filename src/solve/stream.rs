@@ -175,7 +175,11 @@ impl<L: Lanes> Stream<L> {
         let mut comers = std::mem::take(&mut self.picked);
         comers.clear();
         let homes = manifolds.homes();
-        comers.extend(manifolds.touching().iter().copied().filter(|&place| !homes[place as usize].is_some()));
+        for &place in manifolds.touching() {
+            if !homes[place as usize].is_some() {
+                comers.push(place);
+            }
+        }
         for &place in &comers {
             let slots = manifolds.slots(place as usize);
             let color = self.colors.take(slots, bodies);
