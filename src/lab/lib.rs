@@ -43,6 +43,10 @@
 //! | 4, thin | 1.31 of 4, none | not counted |
 //! | 1 | 328, on one core | not counted |
 //!
+//! The baselines of [`thesis`] would lose more by it than the engine: `tidy` 1.1 to 1.7 times. This package is therefore one
+//! unit, and their small functions are inlined by name: as fast as with thin LTO (100 polygons, least of three alternating
+//! runs, ms: tidy 0.088 for 0.096, thesis 0.29 for 0.29).
+//!
 //! `lto = "off"` in the profile of tests: 200 → 152 s. LLVM's passes are flat: inlining 10 %, combining 9 %, selection 7 %,
 //! registers 6 %.
 

@@ -25,7 +25,7 @@ pub(crate) fn main(args: &Args) -> anyhow::Result<()> {
         Ok(())
     })?;
     bar.finish_and_clear();
-    let broad = broad_phase::run(if args.quick { 4 } else { 16 })?;
+    let broad = broad_phase::run(args.quick, if args.quick { 4 } else { 16 })?;
     if args.json {
         return output::print_json(&json!({"rows": rows, "broad_phase": broad}));
     }

@@ -111,7 +111,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: broad_phase::Row::NAME,
         quick: true,
         run: |data, _| {
-            data.broad_phase = broad_phase::run(if data.quick { 4 } else { 16 })?;
+            data.broad_phase = broad_phase::run(data.quick, if data.quick { 4 } else { 16 })?;
             Ok(())
         },
     },

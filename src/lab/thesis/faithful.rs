@@ -77,14 +77,17 @@ impl Form for HullForm {
 impl Hull for HullForm {
     const STOPS_EARLY: bool = false;
 
+    #[inline(always)]
     fn corners(&self) -> &[Vec2] {
         &self.world_px
     }
+    #[inline(always)]
     fn normal(&self, k: usize) -> Vec2 {
         let (here, next) = (self.world_px[k], self.world_px[(k + 1) % self.world_px.len()]);
         let edge = if self.kind == Kind::Box { next - here } else { here - next };
         edge.perp().normalize()
     }
+    #[inline(always)]
     fn swallows_centres(&self) -> bool {
         self.kind == Kind::Polygon
     }
@@ -96,9 +99,11 @@ fn about_z(angle: f32) -> Matrix {
     [[c, s, 0.0, 0.0], [-s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 }
 
+#[inline(always)]
 fn transform(columns: &Matrix, v: [f32; 4]) -> [f32; 4] {
     let [a, b, c, d] = columns;
-    std::array::from_fn(|row| (a[row] * v[0] + b[row] * v[1]) + (c[row] * v[2] + d[row] * v[3]))
+    let of = |row: usize| (a[row] * v[0] + b[row] * v[1]) + (c[row] * v[2] + d[row] * v[3]);
+    [of(0), of(1), of(2), of(3)]
 }
 
 #[derive(Debug)]
@@ -137,10 +142,12 @@ impl Body {
         self.shape.form.kind()
     }
 
+    #[inline(always)]
     fn hull(&self) -> Option<&HullForm> {
         self.shape.form.as_any().downcast_ref()
     }
 
+    #[inline(always)]
     fn is_circle(&self) -> bool {
         self.shape.form.as_any().is::<CircleForm>()
     }
@@ -165,10 +172,12 @@ impl FaithfulBodies {
 }
 
 impl Layout for FaithfulBodies {
+    #[inline(always)]
     fn len(&self) -> usize {
         self.bodies.len()
     }
 
+    #[inline(always)]
     fn rigid(&self, body: usize) -> &Rigid {
         &self.bodies[body].rigid
     }
@@ -185,11 +194,13 @@ impl Layout for FaithfulBodies {
         }
     }
 
+    #[inline(always)]
     fn both_circles(&self, i: usize, j: usize) -> bool {
         let (a, b) = (self.bodies[i].kind(), self.bodies[j].kind());
         a == Kind::Circle && b == Kind::Circle
     }
 
+    #[inline(always)]
     fn bounds_meet(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         bounds_meet(a.rigid.position_px, a.shape.radius_px, b.rigid.position_px, b.shape.radius_px)

@@ -24,6 +24,7 @@ pub(super) trait Hull {
 }
 
 /// Do two bounding circles touch?
+#[inline(always)]
 pub(super) fn bounds_meet(a_px: Vec2, radius_a_px: f32, b_px: Vec2, radius_b_px: f32) -> bool {
     let reach = radius_a_px + radius_b_px;
     a_px.distance_squared(b_px) <= reach * reach

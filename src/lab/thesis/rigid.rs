@@ -48,16 +48,19 @@ pub(super) struct Rigid {
 
 impl Rigid {
     /// A heavy body is static too: a defect that is kept.
+    #[inline(always)]
     pub(super) fn is_static(&self) -> bool {
         self.inverse_mass <= STATIC_INVERSE_MASS
     }
 
     /// The velocity of the point `arm` away from the centre.
+    #[inline(always)]
     pub(super) fn velocity_at(&self, arm_px: Vec2) -> Vec2 {
         self.velocity_px + self.spin * arm_px.perp()
     }
 
     /// Changes the velocities by an impulse at `arm`; static bodies take none.
+    #[inline(always)]
     pub(super) fn push(&mut self, impulse: Vec2, arm_px: Vec2) {
         if !self.is_static() {
             self.velocity_px += impulse * self.inverse_mass;

@@ -77,12 +77,15 @@ impl Outline {
 impl Hull for Outline {
     const STOPS_EARLY: bool = true;
 
+    #[inline(always)]
     fn corners(&self) -> &[Vec2] {
         &self.world_px[..self.count]
     }
+    #[inline(always)]
     fn normal(&self, k: usize) -> Vec2 {
         self.normals[k]
     }
+    #[inline(always)]
     fn swallows_centres(&self) -> bool {
         self.polygon
     }
@@ -134,10 +137,12 @@ impl TidyBodies {
 }
 
 impl Layout for TidyBodies {
+    #[inline(always)]
     fn len(&self) -> usize {
         self.bodies.len()
     }
 
+    #[inline(always)]
     fn rigid(&self, body: usize) -> &Rigid {
         &self.bodies[body].rigid
     }
@@ -151,10 +156,12 @@ impl Layout for TidyBodies {
         }
     }
 
+    #[inline(always)]
     fn both_circles(&self, i: usize, j: usize) -> bool {
         self.bodies[i].circle && self.bodies[j].circle
     }
 
+    #[inline(always)]
     fn bounds_meet(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         bounds_meet(a.rigid.position_px, a.radius_px, b.rigid.position_px, b.radius_px)
