@@ -104,11 +104,11 @@ enum Begin {
 }
 
 impl Begin {
-    fn name(self, large: bool) -> &'static str {
+    /// In words; `ours` says how our poses came about.
+    fn name(self, ours: &'static str) -> &'static str {
         match self {
             Self::Own => "600 steps of its own",
-            Self::Ours { steps: 0 } if large => "1800 steps of lamina2d",
-            Self::Ours { steps: 0 } => "600 steps of lamina2d",
+            Self::Ours { steps: 0 } => ours,
             Self::Ours { .. } => "600 steps of lamina2d, then some of its own",
         }
     }
@@ -237,7 +237,7 @@ fn line_up(plan: &Plan, shapes: Mix, windows: &Windows) -> anyhow::Result<Vec<En
         for (engine, version) in [("thesis", Version::Faithful), ("tidy", Version::Tidy)] {
             let mut contestant = Contestant::baseline(&from, integrator, version, true)?;
             contestant.steps(own_steps)?;
-            let start = windows.baselines.name(large);
+            let start = windows.baselines.name(by_us);
             let integrator = integrator_of(integrator);
             entries.push(Entry {
                 integrator,
