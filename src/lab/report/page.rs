@@ -174,14 +174,14 @@ pub(super) struct Page<'a> {
 }
 
 #[derive(Template)]
-#[template(path = "page.html", config = "report/askama.toml")]
+#[template(path = "page.html")]
 struct Html<'a> {
     page: &'a Page<'a>,
     machine: &'a Machine,
 }
 
 #[derive(Template)]
-#[template(path = "summary.md", config = "report/askama.toml", escape = "none")]
+#[template(path = "summary.md", escape = "none")]
 struct Markdown<'a> {
     page: &'a Page<'a>,
     machine: &'a Machine,
