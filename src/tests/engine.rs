@@ -13,6 +13,10 @@ mod shared_scenes;
 #[path = "shared/sleep.rs"]
 mod shared_sleep;
 
+/// Of the long ranges every so many cases are run here; all of them are, optimised, by `slow`. Prime to the inner sides
+/// of a range, so that their values take turns.
+const EVERY: usize = 7;
+
 mod engine {
     mod balances;
     mod bodies;

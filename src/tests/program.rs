@@ -5,6 +5,8 @@ mod shared_cli;
 #[path = "shared/motion.rs"]
 #[allow(dead_code, reason = "each binary takes the helpers it needs")]
 mod shared_motion;
+#[path = "shared/orders.rs"]
+mod shared_orders;
 #[path = "shared/recording.rs"]
 mod shared_recording;
 #[path = "shared/scenes.rs"]

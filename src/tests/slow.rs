@@ -3,6 +3,14 @@
 #[path = "shared/cli.rs"]
 #[allow(dead_code, reason = "each binary takes the helpers it needs")]
 mod shared_cli;
+#[path = "shared/joints.rs"]
+#[allow(dead_code, reason = "each binary takes the helpers it needs")]
+mod shared_joints;
+#[path = "shared/motion.rs"]
+#[allow(dead_code, reason = "each binary takes the helpers it needs")]
+mod shared_motion;
+#[path = "shared/orders.rs"]
+mod shared_orders;
 #[path = "shared/soak.rs"]
 mod shared_soak;
 #[path = "shared/victim.rs"]
@@ -14,8 +22,18 @@ use shared_cli::{folder, lamina, nulls};
 use shared_soak::soak;
 use shared_victim::{Outcome, Victim};
 
+/// Of the ranges below the engine's own tests run some cases: here, optimised, all of them.
+const EVERY: usize = 1;
+
+mod engine {
+    mod chains;
+    mod loads;
+    mod nets;
+    mod seams;
+}
+
 #[test]
-fn the_long_commands_print_one_json_document_and_the_report_leaves_its_files() {
+fn bench_and_report_print_one_json_document_each_and_leave_their_files() {
     let bench = lamina(&["bench", "--quick", "--json"]).json();
     let rows = bench["rows"].as_array().unwrap();
     for engine in ["lamina2d", "thesis", "tidy"] {
@@ -95,6 +113,13 @@ fn an_interrupted_report_leaves_what_is_done() {
     );
     let page = std::fs::read_to_string(out.join("index.html")).unwrap();
     assert!(page.contains("Interrupted.") && page.contains("Not measured: matrix"), "{page}");
+}
+
+#[test]
+fn long_orbits_have_their_orders() {
+    for name in shared_orders::LONG {
+        shared_orders::hold(name);
+    }
 }
 
 #[test]

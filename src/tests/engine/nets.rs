@@ -6,6 +6,7 @@ use lamina2d::scene::{BodySpec, Scene, ShapeSpec};
 use lamina2d::settings::Settings;
 use lamina2d::simulation::Simulation;
 
+use crate::EVERY;
 use crate::shared_motion::{scene_of, start};
 
 const DT_SECS: f64 = 1.0 / 60.0;
@@ -31,9 +32,10 @@ fn rod(a: usize, b: usize) -> JointSpec {
 /// Trusses that are just held and such that have rods to spare, light at their nodes and loaded in the middle, stand.
 #[test]
 fn trusses_carry_what_stands_on_them() {
-    for (bays, load, crossed) in [2, 6, 10].into_iter().flat_map(|bays| {
+    let cases = [2, 6, 10].into_iter().flat_map(|bays| {
         [1.0, 30.0, 1000.0].into_iter().flat_map(move |load| [false, true].map(|x| (bays, load, x)))
-    }) {
+    });
+    for (bays, load, crossed) in cases.step_by(EVERY) {
         let (nodes, middle) = (bays + 1, bays + 1 + bays / 2);
         let bodies = (0..2 * nodes).map(|k| match k {
             k if k == 0 || k == bays => disc([k as f64, 0.0]).fixed(),
