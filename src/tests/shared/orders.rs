@@ -7,8 +7,8 @@ pub(crate) const LONG: [&str; 3] = ["a12_kepler_e09", "a14_arenstorf", "a15_plei
 
 /// Runs a case and holds every method to what is expected of it.
 pub(crate) fn hold(name: &str) {
-    let case = chosen(&[name.to_owned()], false).unwrap()[0];
-    let all = observe(case).unwrap();
+    let case = chosen(&[name.to_owned()], false).expect("a case of this name")[0];
+    let all = observe(case).expect("stays finite");
     for observed in &all {
         let Observed { method, expect, errors, order, .. } = observed;
         let least = errors.iter().filter_map(|(_, error)| *error).fold(f64::INFINITY, f64::min);
