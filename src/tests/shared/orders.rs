@@ -2,7 +2,7 @@
 
 use lamina::accuracy::{Expect, MIN_HALVINGS, Observed, TOLERANCE, chosen, observe};
 
-/// Half a minute or more each without optimisation: held by `cargo test --release --test slow`.
+/// Twenty seconds to a minute each without optimisation: held by `cargo test --release --test slow`.
 pub(crate) const LONG: [&str; 3] = ["a12_kepler_e09", "a14_arenstorf", "a15_pleiades"];
 
 /// Runs a case and holds every method to what is expected of it.
