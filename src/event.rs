@@ -192,6 +192,11 @@ impl SceneEvent {
         }
     }
 
+    /// Sorts by when they are done, by steps of `dt_secs`; those of one moment stay in order.
+    pub(crate) fn sort(numbered: &mut [(usize, Self)], dt_secs: f64) {
+        numbered.sort_by(|(_, a), (_, b)| a.secs(dt_secs).total_cmp(&b.secs(dt_secs)));
+    }
+
     /// Seconds, by steps of `dt_secs`.
     pub fn secs(&self, dt_secs: f64) -> f64 {
         match self.at {

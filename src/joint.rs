@@ -104,6 +104,11 @@ impl<R: Real> Joints<R> {
         self.places.iter().enumerate().filter_map(|(at, place)| Some((at as u32, place.joint.as_ref()?)))
     }
 
+    /// Slots of the bodies that each joint holds, in order.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32))
+    }
+
     /// The joint in a place, if there is one.
     pub fn at(&self, place: u32) -> Option<&Joint> {
         self.places.get(place as usize)?.joint.as_ref()

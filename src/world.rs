@@ -252,7 +252,7 @@ impl<L: Lanes> World<L> {
             apart: self.broad.kept_apart(),
             seams: self.narrow.seams(),
         };
-        let joined = self.joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
+        let joined = self.joints.ends();
         self.continuous.stop(&mut self.bodies, &around, joined, &mut self.motion.has_moved);
         for slot in self.continuous.met() {
             self.motion.outlook.any_has_moved = true;

@@ -196,11 +196,7 @@ impl DirectContacts {
         let Self { rows: points, sets, picked, changes, .. } = self;
         stream.visit(&mut Read { points, sets, picked, velocities: rows, pass, share });
         changes.resize(rows.len(), [0.0; 3]);
-        self.order.clear();
-        self.order.extend(0..self.rows.len() as u32);
-        // By component and pair: the order of lanes is that in which contacts came.
-        let key = |row: u32| (self.rows[row as usize].component, self.rows[row as usize].slots, row);
-        self.order.sort_unstable_by_key(|&row| key(row));
+        self.sort_rows();
         let component = |row: &u32, rows: &[Row]| rows[*row as usize].component;
         let mut first = 0;
         while first < self.order.len() {
@@ -217,6 +213,14 @@ impl DirectContacts {
                 *value = L::Elem::from_f64(value.to_f64() + change);
             }
         }
+    }
+
+    /// By component and pair: the order of lanes is that in which contacts came.
+    fn sort_rows(&mut self) {
+        let Self { rows, order, .. } = self;
+        order.clear();
+        order.extend(0..rows.len() as u32);
+        order.sort_unstable_by_key(|&row| (rows[row as usize].component, rows[row as usize].slots, row));
     }
 
     /// The rows of one component.

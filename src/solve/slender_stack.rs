@@ -20,6 +20,7 @@
 
 use super::batches::{Ends, Visit};
 use super::constraint::Constraint;
+use super::direct::DirectContacts;
 use super::substep_group::Goal;
 use crate::body::{Bodies, BodyKind};
 use crate::each::Each as _;
@@ -93,13 +94,13 @@ impl SlenderStacks {
     }
 
     /// Substeps that the stack needs that stands on each body's way down, per slot: so as not to lean, and not to sink in;
-    /// the second below 0 for what holds on to itself in rings. `joined`: slots of joints; `rigid`: slots whose contacts do not
+    /// the second below 0 for what holds on to itself in rings. `joined`: slots of joints; `direct`: contacts that do not
     /// give way.
     pub(super) fn look<R: Real>(
         &mut self,
         goal: &Goal,
         (bodies, fields): (&Bodies<R>, &[Field<R>]),
-        (joined, rigid): (impl Iterator<Item = [u32; 2]>, impl Fn(u32) -> bool),
+        (joined, direct): (impl Iterator<Item = [u32; 2]>, &DirectContacts),
         needs: &mut Vec<[f64; 2]>,
     ) {
         needs.clear();
@@ -130,7 +131,7 @@ impl SlenderStacks {
             let sinking = goal.sinking(edge.pressed(slot, &part), edge.mass) / (MOST_SAG * size);
             // Discs alone do not stand on each other.
             let asks = goal.holds_up && edge.turn > 0.0 && sinking > BORNE * f64::from(goal.base).powi(2);
-            let asks = asks && part.rests(bodies, slot as usize) && !rigid(slot);
+            let asks = asks && part.rests(bodies, slot as usize) && !direct.holds(slot);
             let sinking = if asks { sinking } else { 0.0 };
             needs[slot as usize] = [sum, sinking].each(f64::sqrt);
             self.parts[slot as usize].contacts = 0;

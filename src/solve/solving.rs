@@ -12,7 +12,6 @@ use super::substep_group::{Goal, SubstepGroups};
 use super::{SolverContext, avbd, carries_impulses, deep, pushes};
 use crate::body::{Bodies, BodyKind};
 use crate::contact::{ContactRow, Manifolds};
-use crate::each::Each as _;
 use crate::force::Field;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
@@ -85,8 +84,7 @@ impl<L: Lanes> Solving<L> {
             if !self.flew {
                 self.stream.visit(&mut touching);
             }
-            let rigid = |slot| self.direct.holds(slot);
-            self.substep_groups.weigh(goal, bodies, ends_of(joints), rigid);
+            self.substep_groups.weigh(goal, bodies, joints.ends(), &self.direct);
         }
         looked
     }
@@ -115,7 +113,7 @@ impl<L: Lanes> Solving<L> {
         self.substep_groups.note_swing(&goal, self.joints.swing());
         let wanted = self.substep_groups.wants(&goal, looked);
         let changed = wanted
-            && self.substep_groups.decide(&goal, bodies, manifolds, ends_of(joints), &motion.runs, looked);
+            && self.substep_groups.decide(&goal, bodies, manifolds, joints.ends(), &motion.runs, looked);
         self.substep_groups.count_step(looked);
         if changed {
             self.catch_up(motion);
@@ -451,9 +449,4 @@ impl<L: Lanes> Solving<L> {
     pub fn stream(&self) -> &Stream<L> {
         &self.stream
     }
-}
-
-/// Slots of the bodies that joints hold.
-fn ends_of<R: Real>(joints: &Joints<R>) -> impl Iterator<Item = [u32; 2]> {
-    joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32))
 }

@@ -28,6 +28,7 @@ use std::ops::Range;
 
 use super::batches::{Ends, Visit};
 use super::constraint::Constraint;
+use super::direct::DirectContacts;
 use super::slender_stack::{SlenderStacks, Touching};
 use crate::body::{Bodies, BodyKind};
 use crate::column::{Column, PAD};
@@ -185,15 +186,15 @@ impl<R: Real> SubstepGroups<R> {
         self.slender_stacks.reading(goal.touch)
     }
 
-    /// What stacks need, by what has been noted. `joints`: the slots they join; `rigid`: slots whose contacts are solved at once.
-    pub fn weigh(
+    /// What stacks need, by what has been noted. `joints`: the slots they join; `direct`: contacts that are solved at once.
+    pub(super) fn weigh(
         &mut self,
         goal: &Goal,
         bodies: (&Bodies<R>, &[Field<R>]),
         joints: impl Iterator<Item = [u32; 2]>,
-        rigid: impl Fn(u32) -> bool,
+        direct: &DirectContacts,
     ) {
-        self.slender_stacks.look(goal, bodies, (joints, rigid), &mut self.slender_stack_needs);
+        self.slender_stacks.look(goal, bodies, (joints, direct), &mut self.slender_stack_needs);
     }
 
     /// Decides who has which substep group; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the

@@ -1,7 +1,7 @@
 //! What is done to a world between two steps: by whoever holds it, and by events of its scene when they are due.
 
 use super::{StepError, World, WorldError};
-use crate::body::{BodyError, BodyId, BodyKind};
+use crate::body::{Bodies, BodyError, BodyId, BodyKind};
 use crate::each::Each as _;
 use crate::event::{Action, SceneEvent, When};
 use crate::joint::{JointError, Motor};
@@ -93,7 +93,7 @@ impl<L: Lanes> World<L> {
         let mut in_turn: Vec<_> = events.iter().cloned().enumerate().collect();
         let mut trial = self.clone();
         trial.laws.acts.came.clone_from(&came);
-        in_turn.sort_by(|(_, a), (_, b)| a.secs(dt_secs).total_cmp(&b.secs(dt_secs)));
+        SceneEvent::sort(&mut in_turn, dt_secs);
         for (event, at) in in_turn {
             let done = if at.secs(dt_secs) < 0.0 || !at.secs(dt_secs).is_finite() {
                 Err(format!("time must be finite and at least 0, got {:?}", at.secs(dt_secs)))
@@ -115,7 +115,7 @@ impl<L: Lanes> World<L> {
         let is_due = |event: &mut (usize, SceneEvent)| event.1.is_due(steps, time_secs, dt_secs);
         let mut due: Vec<_> = self.laws.acts.waiting.extract_if(.., is_due).collect();
         // In the order they were tried in.
-        due.sort_by(|(_, a), (_, b)| a.secs(dt_secs).total_cmp(&b.secs(dt_secs)));
+        SceneEvent::sort(&mut due, dt_secs);
         for k in 0..due.len() {
             let (event, at) = due[k].clone();
             if let Err(why) = self.perform(at.action) {
@@ -126,7 +126,7 @@ impl<L: Lanes> World<L> {
         if let Some(pull) = self.laws.acts.pull {
             match self.bodies.check_alive(pull.id).map(|slot| self.bodies.kind(slot)) {
                 Ok(BodyKind::Dynamic) => {
-                    let (linear, angular) = self.impulse_of(&pull, dt_secs);
+                    let (linear, angular) = impulse_of(&self.bodies, &pull, dt_secs);
                     // What is too large for the precision pulls not at all.
                     let _ = self.apply_impulse(pull.id, linear, angular);
                 }
@@ -218,37 +218,36 @@ impl<L: Lanes> World<L> {
     pub fn pulled(&self) -> Option<&Pull> {
         self.laws.acts.pull.as_ref()
     }
+}
 
-    /// The impulse (N·s, N·m·s) of a damped spring between a point of a body and its target over a step, by the end of
-    /// which it is worked out, so that no step is too long for it.
-    ///
-    /// With k and c of the spring for the body's mass: γ = 1/(h(c + hk)), β = hk/(c + hk), and p = −(K + γ)⁻¹(v + βC/h),
-    /// where K is the inverse mass seen at the point, v its velocity and C its distance from the target
-    /// (E. Catto, "Soft Constraints", GDC 2011).
-    fn impulse_of(&self, pull: &Pull, h_secs: f64) -> ([f64; 2], f64) {
-        let (bodies, slot) = (&self.bodies, pull.id.slot());
-        let [c, s, w, vx, vy, m, i] =
-            [&bodies.c, &bodies.s, &bodies.w, &bodies.vx, &bodies.vy, &bodies.inv_mass, &bodies.inv_inertia]
-                .each(|column| column[slot].to_f64());
-        let position = bodies.place(slot);
-        let [px, py] = pull.point_body;
-        let arm = [c * px - s * py, s * px + c * py];
-        let velocity = [vx - w * arm[1], vy + w * arm[0]];
-        let mass = 1.0 / m;
-        let omega = std::f64::consts::TAU * PULL_HERTZ;
-        let (stiffness, damping) = (mass * omega * omega, 2.0 * mass * PULL_DAMPING * omega);
-        let soft = damping + h_secs * stiffness;
-        let (gamma, beta) = (1.0 / (h_secs * soft), stiffness / soft);
-        let wanted = [0, 1].each(|k| velocity[k] + beta * (position[k] + arm[k] - pull.target[k]));
-        let k11 = m + i * arm[1] * arm[1] + gamma;
-        let k12 = -i * arm[0] * arm[1];
-        let k22 = m + i * arm[0] * arm[0] + gamma;
-        let inverse = 1.0 / (k11 * k22 - k12 * k12);
-        let p =
-            [-inverse * (k22 * wanted[0] - k12 * wanted[1]), -inverse * (k11 * wanted[1] - k12 * wanted[0])];
-        let (length, most) = ((p[0] * p[0] + p[1] * p[1]).sqrt(), mass * PULL_MOST * h_secs);
-        let scale = if length > most { most / length } else { 1.0 };
-        let p = p.each(|part| part * scale);
-        (p, arm[0] * p[1] - arm[1] * p[0])
-    }
+/// The impulse (N·s, N·m·s) of a damped spring between a point of a body and its target over a step, by the end of
+/// which it is worked out, so that no step is too long for it.
+///
+/// With k and c of the spring for the body's mass: γ = 1/(h(c + hk)), β = hk/(c + hk), and p = −(K + γ)⁻¹(v + βC/h),
+/// where K is the inverse mass seen at the point, v its velocity and C its distance from the target
+/// (E. Catto, "Soft Constraints", GDC 2011).
+fn impulse_of<R: Real>(bodies: &Bodies<R>, pull: &Pull, h_secs: f64) -> ([f64; 2], f64) {
+    let slot = pull.id.slot();
+    let [c, s, w, vx, vy, m, i] =
+        [&bodies.c, &bodies.s, &bodies.w, &bodies.vx, &bodies.vy, &bodies.inv_mass, &bodies.inv_inertia]
+            .each(|column| column[slot].to_f64());
+    let position = bodies.place(slot);
+    let [px, py] = pull.point_body;
+    let arm = [c * px - s * py, s * px + c * py];
+    let velocity = [vx - w * arm[1], vy + w * arm[0]];
+    let mass = 1.0 / m;
+    let omega = std::f64::consts::TAU * PULL_HERTZ;
+    let (stiffness, damping) = (mass * omega * omega, 2.0 * mass * PULL_DAMPING * omega);
+    let soft = damping + h_secs * stiffness;
+    let (gamma, beta) = (1.0 / (h_secs * soft), stiffness / soft);
+    let wanted = [0, 1].each(|k| velocity[k] + beta * (position[k] + arm[k] - pull.target[k]));
+    let k11 = m + i * arm[1] * arm[1] + gamma;
+    let k12 = -i * arm[0] * arm[1];
+    let k22 = m + i * arm[0] * arm[0] + gamma;
+    let inverse = 1.0 / (k11 * k22 - k12 * k12);
+    let p = [-inverse * (k22 * wanted[0] - k12 * wanted[1]), -inverse * (k11 * wanted[1] - k12 * wanted[0])];
+    let (length, most) = ((p[0] * p[0] + p[1] * p[1]).sqrt(), mass * PULL_MOST * h_secs);
+    let scale = if length > most { most / length } else { 1.0 };
+    let p = p.each(|part| part * scale);
+    (p, arm[0] * p[1] - arm[1] * p[0])
 }

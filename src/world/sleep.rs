@@ -26,8 +26,7 @@ impl<L: Lanes> World<L> {
     /// Takes in which bodies there are, and which of them hang together without touching.
     pub(super) fn look_over_islands(&mut self) {
         if self.settings.sleep {
-            let links = self.joints.living().map(|(_, joint)| joint.bodies.each(|id| id.slot() as u32));
-            self.islands.look_over(&self.bodies, links);
+            self.islands.look_over(&self.bodies, self.joints.ends());
         }
     }
 

@@ -5,6 +5,7 @@ use bytemuck::{bytes_of, cast_slice};
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use crate::body::Bodies;
 use crate::contact::ContactRow;
 use crate::force::Forces;
 use crate::lanes::{Lanes, Real};
@@ -49,31 +50,11 @@ impl<L: Lanes> World<L> {
     /// `contacts`: the touching pairs too.
     pub fn snapshot(&self, into: &mut Snapshot, contacts: bool) {
         let bodies = &self.bodies;
-        let slots = bodies.len() - 1;
         into.step = self.log.steps;
-        into.contact_width = size_of::<L::Elem>();
-        into.width = if bodies.fine.is_some() { size_of::<f64>() } else { into.contact_width };
-        into.slots = slots;
         into.counts = self.log.counts;
         into.times = *self.log.stopwatch.times();
         into.revision = [bodies.revision(), bodies.removals(), self.laws.revision];
-        into.columns.clear();
-        if bodies.fine.is_some() {
-            let places = (0..2).flat_map(|k| (1..=slots).map(move |slot| bodies.place(slot)[k]));
-            let columns = [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
-            let others = columns.into_iter().flat_map(|column| &column.as_slice()[1..=slots]);
-            let all = places.chain(others.map(|value| value.to_f64()));
-            into.columns.extend(all.flat_map(f64::to_le_bytes));
-        } else {
-            for column in [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w] {
-                into.columns.extend_from_slice(cast_slice(&column.as_slice()[1..=slots]));
-            }
-        }
-        into.flags.clear();
-        let asleep = self.islands.asleep();
-        into.flags.extend((1..=slots).map(|slot| {
-            u8::from(bodies.is_alive(slot)) | u8::from(asleep.get(slot).copied().unwrap_or(false)) << 1
-        }));
+        into.take_bodies(bodies, self.islands.asleep());
         into.pairs.clear();
         into.contacts.clear();
         if contacts {
@@ -82,6 +63,32 @@ impl<L: Lanes> World<L> {
                 into.contacts.extend_from_slice(bytes_of(&row.values));
             });
         }
+    }
+}
+
+impl Snapshot {
+    /// Poses and velocities, and who lives and sleeps.
+    fn take_bodies<R: Real>(&mut self, bodies: &Bodies<R>, asleep: &[bool]) {
+        let slots = bodies.len() - 1;
+        self.contact_width = size_of::<R>();
+        self.width = if bodies.fine.is_some() { size_of::<f64>() } else { self.contact_width };
+        self.slots = slots;
+        self.columns.clear();
+        if bodies.fine.is_some() {
+            let places = (0..2).flat_map(|k| (1..=slots).map(move |slot| bodies.place(slot)[k]));
+            let columns = [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w];
+            let others = columns.into_iter().flat_map(|column| &column.as_slice()[1..=slots]);
+            let all = places.chain(others.map(|value| value.to_f64()));
+            self.columns.extend(all.flat_map(f64::to_le_bytes));
+        } else {
+            for column in [&bodies.x, &bodies.y, &bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w] {
+                self.columns.extend_from_slice(cast_slice(&column.as_slice()[1..=slots]));
+            }
+        }
+        self.flags.clear();
+        self.flags.extend((1..=slots).map(|slot| {
+            u8::from(bodies.is_alive(slot)) | u8::from(asleep.get(slot).copied().unwrap_or(false)) << 1
+        }));
     }
 }
 
@@ -122,8 +129,13 @@ pub struct BodyTable {
 impl<L: Lanes> World<L> {
     /// What bodies are, and the fields they move in.
     pub fn body_table(&self) -> BodyTable {
-        let bodies = &self.bodies;
-        let inverse = |value: L::Elem| if value > L::Elem::ZERO { 1.0 / value.to_f64() } else { 0.0 };
+        BodyTable::of(&self.bodies, self.log.steps, self.laws.forces)
+    }
+}
+
+impl BodyTable {
+    fn of<R: Real>(bodies: &Bodies<R>, step: u64, forces: Forces) -> Self {
+        let inverse = |value: R| if value > R::ZERO { 1.0 / value.to_f64() } else { 0.0 };
         let entry = |slot: usize| BodyEntry {
             slot: slot as u32,
             generation: bodies.generation(slot),
@@ -135,11 +147,7 @@ impl<L: Lanes> World<L> {
             friction: bodies.friction[slot].to_f64(),
             restitution: bodies.restitution[slot].to_f64(),
         };
-        BodyTable {
-            step: self.log.steps,
-            bodies: bodies.slots().map(entry).collect(),
-            forces: self.laws.forces,
-        }
+        Self { step, bodies: bodies.slots().map(entry).collect(), forces }
     }
 }
 

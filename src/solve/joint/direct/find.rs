@@ -41,9 +41,7 @@ impl Direct {
         };
         let mut ends: Vec<Node> = pins.ends(L::WIDTH).into_iter().map(pin).collect();
         ends.extend(rods.ends(L::WIDTH).into_iter().filter_map(rod));
-        let moves = |slot: usize| bodies.kind(slot) == BodyKind::Dynamic;
-        let mut trees =
-            Trees::of(ends.iter().map(|node| (node.slots, node.kind == Kind::Weld)), bodies.len(), moves);
+        let moves: Vec<bool> = (0..bodies.len()).map(|slot| bodies.kind(slot) == BodyKind::Dynamic).collect();
         self.members.clear();
         self.members.extend((0..bodies.len()).map(|slot| Member {
             side: Side { velocity: Vec2::zero(), spin: 0.0, inv_mass: 0.0 },
@@ -54,7 +52,6 @@ impl Direct {
             torque: 0.0,
             before: 0.0,
         }));
-        let inv_mass = |slot: usize| bodies.inv_mass[slot].to_f64();
         let far = |node: &Node| {
             let [batch, lane] = node.at;
             (0..2).any(|end| {
@@ -63,11 +60,19 @@ impl Direct {
                     Kind::Rod => rods.link(batch).reach(end, lane),
                     Kind::Pin | Kind::Weld => pins.link(batch).reach(end, lane),
                 };
-                moves(slot) && reach > MOST_REACH * bodies.radius[slot].to_f64()
+                moves[slot] && reach > MOST_REACH * bodies.radius[slot].to_f64()
             })
         };
-        trees.refuse_nets((0..ends.len()).filter(|&k| far(&ends[k])));
-        trees.refuse_easy(inv_mass, moves);
+        let far: Vec<usize> = (0..ends.len()).filter(|&k| far(&ends[k])).collect();
+        self.take_trees(&ends, &far, &moves);
+    }
+
+    /// Of these joints, those that make up trees or nets that are solved at once. `far`: which hold bodies too far out for nets;
+    /// `moves`: which bodies can, by slot. Knows no lanes, so that there is one of it.
+    fn take_trees(&mut self, ends: &[Node], far: &[usize], moves: &[bool]) {
+        let mut trees = Trees::of(ends.iter().map(|node| (node.slots, node.kind == Kind::Weld)), moves);
+        trees.refuse_nets(far);
+        trees.refuse_easy(|slot| self.members[slot].own_inv_mass, moves);
         for Order { joints, looped } in trees.orders() {
             let first = self.nodes.len();
             let shared = match looped {
@@ -78,7 +83,7 @@ impl Direct {
             self.nodes.extend(joints.iter().map(|&k| Node { shared, ..ends[k] }));
             for at in first..self.nodes.len() {
                 let shares = |other: &usize| {
-                    let shared = |slot: &usize| moves(*slot) && self.nodes[*other].slots.contains(slot);
+                    let shared = |slot: &usize| moves[*slot] && self.nodes[*other].slots.contains(slot);
                     self.nodes[at].slots.iter().any(shared)
                 };
                 let later = (at + 1..self.nodes.len()).filter(shares).map(|other| (other, [[0.0; 3]; 3]));
@@ -101,6 +106,16 @@ impl Direct {
         if self.nodes.iter().map(|node| node.slots).eq(self.foreseen.iter().copied()) {
             return;
         }
+        let pull = |slot: usize| {
+            let velocity = [bodies.vx[slot], bodies.vy[slot]].each(Real::to_f64);
+            let [x, y] = acceleration_of(fields, bodies, slot, [bodies.place(slot), velocity], 0.0);
+            x.hypot(y)
+        };
+        self.swing_under(&pull, &|[batch, lane]| rods.link(batch).row().held_lane(lane)[1]);
+    }
+
+    /// As fast as under weights by `pull`, m/s² by slot; `length`: of the rod in a batch and lane, metres.
+    fn swing_under(&mut self, pull: &dyn Fn(usize) -> f64, length: &dyn Fn([usize; 2]) -> f64) {
         self.foreseen.clear();
         self.foreseen.extend(self.nodes.iter().map(|node| node.slots));
         let mut counted = vec![false; self.members.len()];
@@ -112,13 +127,11 @@ impl Direct {
             for slot in nodes.iter().flat_map(|node| node.slots) {
                 let inv_mass = self.members[slot].own_inv_mass;
                 if inv_mass > 0.0 && !std::mem::replace(&mut counted[slot], true) {
-                    let velocity = [bodies.vx[slot], bodies.vy[slot]].each(Real::to_f64);
-                    let [x, y] = acceleration_of(fields, bodies, slot, [bodies.place(slot), velocity], 0.0);
-                    weight += x.hypot(y) / inv_mass;
+                    weight += pull(slot) / inv_mass;
                 }
             }
             for node in nodes.iter().filter(|node| node.kind == Kind::Rod) {
-                let [_, rest] = rods.link(node.at[0]).row().held_lane(node.at[1]);
+                let rest = length(node.at);
                 for slot in node.slots {
                     let body = &mut self.members[slot];
                     body.swing += weight * body.own_inv_mass / rest.max(f64::MIN_POSITIVE);

@@ -40,22 +40,19 @@ pub(super) struct Trees {
 }
 
 impl Trees {
-    /// Of joints between these slots, of which some are welds.
-    pub(super) fn of(
-        ends: impl Iterator<Item = ([usize; 2], bool)>,
-        slots: usize,
-        moves: impl Fn(usize) -> bool,
-    ) -> Self {
+    /// Of joints between these slots, of which some are welds. `moves`: which bodies can, by slot.
+    pub(super) fn of(ends: impl Iterator<Item = ([usize; 2], bool)>, moves: &[bool]) -> Self {
+        let slots = moves.len();
         let (ends, welds): (Vec<_>, Vec<_>) = ends.unzip();
         let mut on = vec![Vec::new(); slots];
         let mut sets = Sets::default();
         sets.part(slots, std::slice::from_ref(&(0..slots)));
         let mut looped = vec![false; slots];
         for (k, &[a, b]) in ends.iter().enumerate() {
-            for slot in [a, b].into_iter().filter(|&slot| moves(slot)) {
+            for slot in [a, b].into_iter().filter(|&slot| moves[slot]) {
                 on[slot].push(k);
             }
-            if moves(a) && moves(b) {
+            if moves[a] && moves[b] {
                 match sets.join([a as u32, b as u32]) {
                     Some([low, high]) => looped[low as usize] |= looped[high as usize],
                     // They hang together already.
@@ -66,9 +63,9 @@ impl Trees {
         // What hangs from the ground by two joints closes on itself through it; with pins alone its rows are still independent.
         let mut held = vec![(0, false); slots];
         for (&[a, b], weld) in ends.iter().zip(welds) {
-            let Some(end) = [a, b].into_iter().find(|&slot| moves(slot)) else { continue };
+            let Some(end) = [a, b].into_iter().find(|&slot| moves[slot]) else { continue };
             let (anchors, has_weld) = &mut held[sets.of(end as u32) as usize];
-            *anchors += u32::from(!moves(a) || !moves(b));
+            *anchors += u32::from(!moves[a] || !moves[b]);
             *has_weld |= weld;
         }
         for (looped, (anchors, has_weld)) in looped.iter_mut().zip(held) {
@@ -78,8 +75,8 @@ impl Trees {
     }
 
     /// Leaves nets alone that have one of these joints.
-    pub(super) fn refuse_nets(&mut self, joints: impl Iterator<Item = usize>) {
-        for joint in joints {
+    pub(super) fn refuse_nets(&mut self, joints: &[usize]) {
+        for &joint in joints {
             for end in self.ends[joint] {
                 let set = self.sets.of(end as u32) as usize;
                 self.wanted[set] &= !self.looped[set];
@@ -88,10 +85,10 @@ impl Trees {
     }
 
     /// Leaves those alone whose masses are near each other.
-    pub(super) fn refuse_easy(&mut self, inv_mass: impl Fn(usize) -> f64, moves: impl Fn(usize) -> bool) {
+    pub(super) fn refuse_easy(&mut self, inv_mass: impl Fn(usize) -> f64, moves: &[bool]) {
         let mut spans = vec![[f64::INFINITY, 0.0f64]; self.on.len()];
         let mut pins = vec![0.0f64; self.on.len()];
-        for slot in (0..self.on.len()).filter(|&slot| moves(slot) && !self.on[slot].is_empty()) {
+        for slot in (0..self.on.len()).filter(|&slot| moves[slot] && !self.on[slot].is_empty()) {
             let tree = self.sets.of(slot as u32) as usize;
             let span = &mut spans[tree];
             *span = [span[0].min(inv_mass(slot)), span[1].max(inv_mass(slot))];
