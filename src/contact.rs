@@ -136,7 +136,8 @@ pub struct Manifolds<R: Real> {
     before: PairTable<R>,
     /// Contacts of what sleeps.
     rest: rest::SleepingContacts<R>,
-    bucket_of: Vec<u8>,
+    /// Of each pair of the list being taken, and whether its second body is A.
+    bucket_of: Vec<(u8, bool)>,
     /// Places of the pairs that touch, ascending.
     touching: Vec<u32>,
     /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
@@ -163,17 +164,17 @@ impl<R: Real> Default for Manifolds<R> {
 }
 
 impl<R: Real> Manifolds<R> {
-    /// Takes a new list of pairs; `bucket(pair)` names each one's bucket and puts its body A first. What pairs
+    /// Takes a new list of pairs; `bucket(pair)` names each one's bucket, and says whether its second body is A. What pairs
     /// of the last list keep is taken over.
-    pub fn rebuild(&mut self, pairs: &[[u32; 2]], bucket: impl Fn([u32; 2]) -> (usize, [u32; 2])) {
+    pub fn rebuild(&mut self, pairs: &[[u32; 2]], bucket: impl Fn([u32; 2]) -> (usize, bool)) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.bucket_of.clear();
         let mut counts = [0; 6];
-        for &pair in pairs {
-            let (number, _) = bucket(pair);
-            self.bucket_of.push(number as u8);
+        self.bucket_of.extend(pairs.iter().map(|&pair| {
+            let (number, flips) = bucket(pair);
             counts[number] += 1;
-        }
+            (number as u8, flips)
+        }));
         self.before.make_room(pairs.len());
         let table = &mut self.now;
         table.resize(pairs.len());
@@ -181,10 +182,9 @@ impl<R: Real> Manifolds<R> {
         for number in 1..6 {
             next[number] = next[number - 1] + counts[number - 1];
         }
-        for (&pair, &number) in pairs.iter().zip(&self.bucket_of) {
-            let (_, [a, b]) = bucket(pair);
+        for (&[low, high], &(number, flips)) in pairs.iter().zip(&self.bucket_of) {
             let at = &mut next[number as usize];
-            (table.a[*at], table.b[*at]) = (a, b);
+            (table.a[*at], table.b[*at]) = if flips { (high, low) } else { (low, high) };
             *at += 1;
         }
         table.ends = next;
@@ -452,7 +452,7 @@ impl<R: Real> Manifolds<R> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let tables = self.now.bytes() + self.before.bytes() + self.rest.bytes();
-        tables + self.touching.capacity() * 4 + self.bucket_of.capacity()
+        tables + self.touching.capacity() * 4 + self.bucket_of.capacity() * 2
     }
 }
 

@@ -3,7 +3,7 @@
 //! A body is fast when a point of it may have moved further in one step than half its inner radius
 //! ([`Bodies::core`]); the passes that end a step note such bodies ([`Fast`]), at one comparison per lane value.
 //! Each goes its way in a straight line at even speed and spin until it meets another body: there both get the impulse of
-//! their restitution and friction, and go on with what is left of the step, where either may meet again ([`MEETINGS`]).
+//! their restitution and friction, and go on with what is left of the step, where either may meet again (eight times).
 //! What happens within a step happens in the order of its instants; ties go by slots.
 //! A jointed body stops where it meets something and keeps its velocity, and so does what it hits: the next step solves the impact
 //! together with the joints. Bounced as if it were free, a ball on a rod lost a twelfth of its energy.
@@ -38,24 +38,24 @@
 //! that promises a whole step to the circle promises it to the body, so the search would have said the same.
 
 mod approach;
+mod neighbours;
 mod respond;
 mod sweep;
+mod way;
 
 use glam::DVec2;
 
-use crate::body::{Bodies, BodyKind};
+use crate::body::{Bodies, BodyKind, Placed};
 use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::motion::{Fast, FastBodies};
 use crate::seams::Seams;
-use crate::vec2::Rot;
 
 use approach::{Approach, Reach, approach, impact, touches};
+use neighbours::Neighbours;
 use respond::Motion;
-use sweep::{Sweep, Wall};
-
-/// How often a body may meet others within a step; then it stays where it is.
-const MEETINGS: u32 = 8;
+use sweep::{Course, Sweep, Wall};
+use way::{Meeting, Other, Way};
 
 /// What a step knows that its fast bodies may meet.
 #[derive(Clone, Copy, Debug)]
@@ -76,40 +76,6 @@ pub(crate) struct Around<'a, R> {
     pub(crate) seams: &'a Seams,
 }
 
-/// A body on its way through a step.
-#[derive(Clone, Debug)]
-struct Way {
-    slot: usize,
-    /// What is left of it.
-    sweep: Sweep,
-    /// The share of the step that is over.
-    since: f64,
-    motion: Motion,
-    reach: Reach,
-    /// It has met something: its pose and velocity are to be written.
-    met: bool,
-    left: u32,
-    next: Option<Meeting>,
-}
-
-/// What a body meets next.
-#[derive(Clone, Copy, Debug)]
-struct Meeting {
-    /// As a share of the whole step.
-    at: f64,
-    /// Unit, towards what it meets.
-    axis: DVec2,
-    with: Other,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Other {
-    /// One of the obstacles.
-    Wall(usize),
-    /// One of the ways.
-    Way(usize),
-}
-
 /// The fast bodies of a step, and what they may meet; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Continuous<R: Real> {
@@ -121,8 +87,8 @@ pub(crate) struct Continuous<R: Real> {
     ways: Vec<Way>,
     /// By slot: which way, counted from 1; 0 for none.
     way_of: Vec<u32>,
-    /// Ways that may meet: each with every other, in order.
-    pairs: Vec<[u32; 2]>,
+    /// Ways that may meet.
+    neighbours: Neighbours,
     /// Those that one may meet, while it looks ahead.
     beside: Vec<u32>,
     /// Per slot, whether joints hold the body.
@@ -137,7 +103,7 @@ impl<R: Real> Default for Continuous<R> {
             walls: Vec::new(),
             ways: Vec::new(),
             way_of: Vec::new(),
-            pairs: Vec::new(),
+            neighbours: Neighbours::default(),
             beside: Vec::new(),
             jointed: Vec::new(),
         }
@@ -177,7 +143,7 @@ impl<R: Real> Continuous<R> {
         let walls = self.obstacles.iter().map(|&slot| Wall::new(bodies, slot as usize, around.dt_secs));
         self.walls.extend(walls);
         self.set_out(bodies, around);
-        self.pairs.sort_unstable_by_key(|&[a, b]| u64::from(a) << 32 | u64::from(b));
+        self.neighbours.list(self.ways.len());
         for way in 0..self.ways.len() {
             self.look_ahead(bodies, around, way);
         }
@@ -185,7 +151,7 @@ impl<R: Real> Continuous<R> {
             self.meet(bodies, around, way);
         }
         for way in self.ways.iter().filter(|way| way.met) {
-            write(bodies, way);
+            way.write(bodies);
             has_moved[way.slot] = true;
         }
     }
@@ -199,12 +165,12 @@ impl<R: Real> Continuous<R> {
     /// The ways of fast bodies, and of those they have pairs with.
     fn set_out(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>) {
         self.ways.clear();
-        self.pairs.clear();
+        self.neighbours.clear();
         self.way_of.clear();
         self.way_of.resize(bodies.len(), 0);
         for at in 0..self.fast.len() {
             let fast = self.fast[at];
-            self.set_out_one(bodies, around, fast.slot as usize, Sweep::of_fast(bodies, &fast));
+            self.set_out_one(bodies, around, fast.slot as usize, Course::of_fast(bodies, &fast));
         }
         let fast = self.ways.len();
         for &[a, b] in around.pairs {
@@ -218,47 +184,36 @@ impl<R: Real> Continuous<R> {
             for slot in both {
                 if self.way_of[slot] == 0 {
                     // As an obstacle that came to where it is by its velocity.
-                    let sweep = Sweep::of_obstacle(bodies, slot, around.dt_secs);
-                    self.set_out_one(bodies, around, slot, sweep);
+                    let course = Course::of_obstacle(bodies, slot, around.dt_secs);
+                    self.set_out_one(bodies, around, slot, course);
                 }
             }
             let ways = both.each(|slot| self.way_of[slot]);
             // One that is not finite has none; the finite check names it.
             if ways.iter().all(|&way| way > 0) {
-                let [a, b] = ways.each(|way| way - 1);
-                self.pairs.extend([[a, b], [b, a]]);
+                self.neighbours.add(ways.each(|way| way - 1));
             }
         }
     }
 
     /// Appends a way; the ways of fast bodies come first.
-    fn set_out_one(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, slot: usize, sweep: Sweep) {
-        if !sweep.is_finite() {
+    fn set_out_one(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, slot: usize, course: Course) {
+        if !course.is_finite() {
             return;
         }
         let core = bodies.core[slot].to_f64();
         let hears_of_gaps = around.margin > R::ZERO;
-        let reach = Reach::new(around.skin_m, hears_of_gaps, core, &sweep, bodies.place_epsilon());
-        let motion = Motion::of(bodies, slot);
-        self.ways.push(Way {
-            slot,
-            sweep,
-            since: 0.0,
-            motion,
-            reach,
-            met: false,
-            left: MEETINGS,
-            next: None,
-        });
+        let reach = Reach::new(around.skin_m, hears_of_gaps, core, &course, bodies.place_epsilon());
+        self.ways.push(Way::new(bodies, slot, course, reach));
         self.way_of[slot] = self.ways.len() as u32;
     }
 
     /// Finds what a body meets next.
     fn look_ahead(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) {
-        let Way { slot, sweep, met, left, .. } = &self.ways[way];
+        let Way { slot, course, met, left, .. } = &self.ways[way];
         // Once it has met something what goes no further than slow bodies do is left to the next step's contacts; whom it may
         // meet that is slow is found by the other.
-        let path = sweep.moved.length() + sweep.angle.abs() * sweep.radius;
+        let path = course.moved.length() + course.angle.abs() * course.radius;
         let goes_on = if *met { path > bodies.core[*slot].to_f64() } else { way < self.fast.len() };
         if *left == 0 || !goes_on {
             self.ways[way].next = None;
@@ -277,7 +232,7 @@ impl<R: Real> Continuous<R> {
             keep(self.wall_ahead(bodies, around, way, wall));
         }
         for other in &beside {
-            keep(self.body_ahead(way, *other as usize));
+            keep(self.body_ahead(bodies, way, *other as usize));
         }
         self.beside = beside;
         self.ways[way].next = first;
@@ -288,12 +243,10 @@ impl<R: Real> Continuous<R> {
     fn beside(&mut self, bodies: &Bodies<R>, around: &Around<'_, R>, way: usize) -> Vec<u32> {
         let mut beside = std::mem::take(&mut self.beside);
         beside.clear();
-        let Way { slot, sweep, met, .. } = self.ways[way];
-        let length = sweep.moved.length();
+        let Way { slot, course, met, .. } = self.ways[way];
+        let length = course.moved.length();
         if !met || length <= bodies.core[slot].to_f64() {
-            let begin = self.pairs.partition_point(|&[own, _]| (own as usize) < way);
-            let own = self.pairs[begin..].iter().take_while(|[own, _]| *own as usize == way);
-            beside.extend(own.map(|&[_, other]| other));
+            beside.extend_from_slice(self.neighbours.of(way));
             return beside;
         }
         for other in bodies.slots().filter(|&other| other != slot && bodies.kind(other) == BodyKind::Dynamic)
@@ -302,15 +255,15 @@ impl<R: Real> Continuous<R> {
             let reach =
                 length + speed * around.dt_secs + (bodies.radius[other] + bodies.radius[slot]).to_f64();
             let pair = [slot.min(other) as u32, slot.max(other) as u32];
-            if (DVec2::from(bodies.place(other)) - sweep.x).length_squared() > reach * reach
+            if (DVec2::from(bodies.place(other)) - course.x).length_squared() > reach * reach
                 || !bodies.may_collide(slot, other)
                 || around.apart.binary_search(&pair).is_ok()
             {
                 continue;
             }
             if self.way_of[other] == 0 {
-                let sweep = Sweep::of_obstacle(bodies, other, around.dt_secs);
-                self.set_out_one(bodies, around, other, sweep);
+                let course = Course::of_obstacle(bodies, other, around.dt_secs);
+                self.set_out_one(bodies, around, other, course);
             }
             beside.extend(self.way_of[other].checked_sub(1));
         }
@@ -322,40 +275,53 @@ impl<R: Real> Continuous<R> {
         bodies: &Bodies<R>,
         around: &Around<'_, R>,
         way: usize,
-        wall: usize,
+        wall_number: usize,
     ) -> Option<Meeting> {
-        let Way { slot, sweep, since, reach, .. } = &self.ways[way];
-        let (other, wall_sweep) = (self.obstacles[wall], self.walls[wall].sweep.after(*since));
-        if !sweep.may_meet(&wall_sweep, reach)
-            || (*since == 0.0 && self.walls[wall].keeps_clear(sweep, reach))
-        {
+        let Way { slot, course, since, reach, .. } = &self.ways[way];
+        let (other, wall) = (self.obstacles[wall_number], &self.walls[wall_number]);
+        if *since == 0.0 && wall.keeps_clear(course, reach) {
+            return None;
+        }
+        let wall_course = wall.sweep.course.after(*since);
+        if !course.may_meet(&wall_course, reach) {
             return None;
         }
         let pair = [other.min(*slot as u32), other.max(*slot as u32)];
         if !bodies.may_collide(*slot, other as usize) || around.apart.binary_search(&pair).is_ok() {
             return None;
         }
-        let (t, axis) = impact(sweep, &wall_sweep, reach)?;
+        let sweep = Sweep::of(bodies, *slot, *course);
+        let (t, axis) = impact(&sweep, &wall.sweep.on(wall_course), reach)?;
         let outline = around.seams.of(other);
-        let met = outline.map_or(Some(axis), |outline| touches(sweep, t, outline, reach))?;
-        Some(Meeting { at: since + t * (1.0 - since), axis: met, with: Other::Wall(wall) })
+        let met = outline.map_or(Some(axis), |outline| touches(&sweep, t, outline, reach))?;
+        Some(Meeting { at: since + t * (1.0 - since), axis: met, with: Other::Wall(wall_number) })
     }
 
-    fn body_ahead(&self, way: usize, other: usize) -> Option<Meeting> {
+    fn body_ahead(&self, bodies: &Bodies<R>, way: usize, other: usize) -> Option<Meeting> {
         let (own, their) = (&self.ways[way], &self.ways[other]);
-        let since = own.since.max(their.since);
         // Both from the later of the instants they were last seen at.
-        let from = |way: &Way| {
-            let over = if way.since < 1.0 { (since - way.since) / (1.0 - way.since) } else { 0.0 };
-            way.sweep.after(over)
+        let since = own.since.max(their.since);
+        // Borrowed where they are, as most are: copies took half of this.
+        let (own_later, their_later);
+        let own_course = if own.since == since {
+            &own.course
+        } else {
+            own_later = own.from(since);
+            &own_later
         };
-        let (own_sweep, their_sweep) = (from(own), from(their));
+        let their_course = if their.since == since {
+            &their.course
+        } else {
+            their_later = their.from(since);
+            &their_later
+        };
         // Bodies that come no further than half of both are deep do not pass through each other: the next step's contact holds.
-        let way = (own_sweep.moved - their_sweep.moved).length();
-        if way <= own.reach.core + their.reach.core || !own_sweep.may_meet(&their_sweep, &own.reach) {
+        let length = (own_course.moved - their_course.moved).length();
+        if length <= own.reach.core + their.reach.core || !own_course.may_meet(their_course, &own.reach) {
             return None;
         }
-        match approach(&own_sweep, &their_sweep, &own.reach) {
+        let of = |way: &Way, course: &Course| Sweep::of(bodies, way.slot, *course);
+        match approach(&of(own, own_course), &of(their, their_course), &own.reach) {
             Approach::Meets(t, axis) => {
                 Some(Meeting { at: since + t * (1.0 - since), axis, with: Other::Way(other) })
             }
@@ -376,25 +342,26 @@ impl<R: Real> Continuous<R> {
         let Some(Meeting { at, axis, with }) = self.ways[way].next.take() else { return };
         let rest_secs = (1.0 - at) * around.dt_secs;
         let gained = DVec2::from(around.gravity) * rest_secs;
-        self.go_to(way, at);
+        self.ways[way].go_to(at);
         let mut own = self.ways[way].motion;
         own.velocity -= gained;
-        let placed = self.ways[way].sweep.at(0.0);
+        let placed = self.placed(bodies, way);
         match with {
             Other::Wall(_) if self.jointed[self.ways[way].slot] => {
-                self.stay(way);
+                self.ways[way].stay();
                 self.expect_anew(bodies, around, [way, way]);
             }
             Other::Way(other) if [way, other].into_iter().any(|way| self.jointed[self.ways[way].slot]) => {
-                self.go_to(other, at);
+                self.ways[other].go_to(at);
                 for way in [way, other] {
-                    self.stay(way);
+                    self.ways[way].stay();
                 }
                 self.expect_anew(bodies, around, [way, other]);
             }
             Other::Wall(wall) => {
                 let slot = self.obstacles[wall] as usize;
-                let their = self.walls[wall].sweep.after(at).at(0.0);
+                let wall = &self.walls[wall].sweep;
+                let their = wall.on(wall.course.after(at)).at(0.0);
                 let slots = [self.ways[way].slot, slot];
                 respond::collide(
                     bodies,
@@ -404,20 +371,20 @@ impl<R: Real> Continuous<R> {
                     [&mut own, &mut Motion::of(bodies, slot)],
                 );
                 own.velocity += gained;
-                self.go_on(way, own, rest_secs, gained);
+                self.ways[way].go_on(own, rest_secs, gained);
                 self.look_ahead(bodies, around, way);
             }
             Other::Way(other) => {
-                self.go_to(other, at);
+                self.ways[other].go_to(at);
                 let mut their = self.ways[other].motion;
                 their.velocity -= gained;
-                let their_placed = self.ways[other].sweep.at(0.0);
+                let their_placed = self.placed(bodies, other);
                 let slots = [self.ways[way].slot, self.ways[other].slot];
                 respond::collide(bodies, slots, [&placed, &their_placed], axis, [&mut own, &mut their]);
                 own.velocity += gained;
                 their.velocity += gained;
-                self.go_on(way, own, rest_secs, gained);
-                self.go_on(other, their, rest_secs, gained);
+                self.ways[way].go_on(own, rest_secs, gained);
+                self.ways[other].go_on(their, rest_secs, gained);
                 self.expect_anew(bodies, around, [way, other]);
             }
         }
@@ -433,42 +400,9 @@ impl<R: Real> Continuous<R> {
         }
     }
 
-    /// A body stays where it is for the rest of the step.
-    fn stay(&mut self, way: usize) {
-        let way = &mut self.ways[way];
-        (way.met, way.left) = (true, 0);
-        (way.sweep.moved, way.sweep.angle) = (DVec2::ZERO, 0.0);
+    /// A body where it is on its way.
+    fn placed(&self, bodies: &Bodies<R>, way: usize) -> Placed {
+        let Way { slot, course, .. } = &self.ways[way];
+        Sweep::of(bodies, *slot, *course).at(0.0)
     }
-
-    /// A body is where it is at an instant of the step.
-    fn go_to(&mut self, way: usize, at: f64) {
-        let way = &mut self.ways[way];
-        let over = if way.since < 1.0 { ((at - way.since) / (1.0 - way.since)).clamp(0.0, 1.0) } else { 1.0 };
-        way.sweep = way.sweep.after(over);
-        way.since = at;
-    }
-
-    /// A body goes on with the velocity it will have as the step ends, of which it has yet to gain some.
-    fn go_on(&mut self, way: usize, motion: Motion, rest_secs: f64, gained: DVec2) {
-        let way = &mut self.ways[way];
-        (way.motion, way.met) = (motion, true);
-        way.left = way.left.saturating_sub(1);
-        if way.left > 0 {
-            way.sweep.moved = (motion.velocity - gained * 0.5) * rest_secs;
-            way.sweep.angle = motion.spin * rest_secs;
-        } else {
-            (way.sweep.moved, way.sweep.angle) = (DVec2::ZERO, 0.0);
-        }
-    }
-}
-
-/// Pose and velocity at the end of a way.
-fn write<R: Real>(bodies: &mut Bodies<R>, way: &Way) {
-    let end = way.sweep.after(1.0);
-    let rot = Rot { c: R::from_f64(end.rot.c), s: R::from_f64(end.rot.s) };
-    bodies.set_place(way.slot, end.x.into());
-    (bodies.c[way.slot], bodies.s[way.slot]) = (rot.c, rot.s);
-    bodies.vx[way.slot] = R::from_f64(way.motion.velocity.x);
-    bodies.vy[way.slot] = R::from_f64(way.motion.velocity.y);
-    bodies.w[way.slot] = R::from_f64(way.motion.spin);
 }

@@ -66,4 +66,21 @@ impl<R: Real> Bodies<R> {
         }
         Placed { centre: DVec2::from(self.place(slot)), disc: self.disc(slot), corners, count }
     }
+
+    /// How far a body reaches from its centroid along a direction, metres, as [`Bodies::placed`] has it.
+    pub(crate) fn extent(&self, slot: usize, along: DVec2) -> f64 {
+        let turn = DVec2::new(self.c[slot].to_f64(), self.s[slot].to_f64());
+        let reach = |x: R, y: R| along.dot(turn.rotate(DVec2::new(x.to_f64(), y.to_f64())));
+        let (hx, hy) = (self.extent_x[slot], self.extent_y[slot]);
+        match self.form(slot) {
+            Form::Circle => hx.to_f64(),
+            Form::Box => reach(hx, hy).max(reach(-hx, hy)).max(reach(hx, -hy)).max(reach(-hx, -hy)),
+            Form::Polygon => {
+                let at = self.shapes(slot).start;
+                let [x, y, ..] = &self.polygons.body[at];
+                let corners = x.iter().zip(y).take(usize::from(self.polygons.count[at]));
+                corners.map(|(&x, &y)| reach(x, y)).fold(f64::MIN, f64::max)
+            }
+        }
+    }
 }

@@ -14,6 +14,11 @@ const CELLS_PER_CIRCLE: f64 = 8.0;
 /// Levels at most: a factor of 2⁴⁰ between the smallest and the largest plain body.
 const MAX_LEVELS: usize = 40;
 
+/// Cells are crowded where circles share theirs with so many, on the mean, themselves counted in: outliers have stretched them.
+const CROWDED: usize = 16;
+/// Lists for which crowded cells are not tried again.
+const PAUSE: u32 = 64;
+
 /// The most cells a level of this many circles is laid out in.
 fn most_cells(circles: usize) -> f64 {
     CELLS_PER_CIRCLE * circles as f64 + 16.0
@@ -31,6 +36,8 @@ struct Level<R: Real> {
     cell_size: f64,
     columns: i64,
     rows: i64,
+    /// With how many each circle shares its cell, summed over circles.
+    sharing: usize,
 }
 
 impl<R: Real> Level<R> {
@@ -44,6 +51,7 @@ impl<R: Real> Level<R> {
             cell_size: 1.0,
             columns: 0,
             rows: 0,
+            sharing: 0,
         }
     }
 }
@@ -52,11 +60,13 @@ impl<R: Real> Level<R> {
 #[derive(Clone, Debug)]
 pub(super) struct Grid<R: Real> {
     levels: Vec<Level<R>>,
+    /// Lists that are to be found otherwise.
+    pause: u32,
 }
 
 impl<R: Real> Default for Grid<R> {
     fn default() -> Self {
-        Self { levels: Vec::new() }
+        Self { levels: Vec::new(), pause: 0 }
     }
 }
 
@@ -68,10 +78,25 @@ impl<R: Real> Grid<R> {
         self.levels.iter().map(level).sum()
     }
 
-    pub(super) fn find<L: Lanes<Elem = R>>(&mut self, circles: &Circles<R>, pairs: &mut Vec<[u32; 2]>) {
+    /// Says whether it has found them: it `gives_way` where cells are crowded.
+    pub(super) fn find<L: Lanes<Elem = R>>(
+        &mut self,
+        circles: &Circles<R>,
+        pairs: &mut Vec<[u32; 2]>,
+        gives_way: bool,
+    ) -> bool {
+        if gives_way && self.pause > 0 {
+            self.pause -= 1;
+            return false;
+        }
         self.assign(circles);
         for level in &mut self.levels {
             level.build(circles);
+        }
+        let sharing: usize = self.levels.iter().map(|level| level.sharing).sum();
+        if gives_way && sharing > CROWDED * circles.len() {
+            self.pause = PAUSE;
+            return false;
         }
         for (k, level) in self.levels.iter().enumerate() {
             level.own_pairs::<L>(pairs);
@@ -79,6 +104,7 @@ impl<R: Real> Grid<R> {
                 level.pairs_with::<L>(coarser, pairs);
             }
         }
+        true
     }
 
     /// Deals the circles out to levels by the power of two of their radius over the smallest.
@@ -90,7 +116,10 @@ impl<R: Real> Grid<R> {
         let smallest = radii.iter().map(|r| r.to_f64()).fold(f64::INFINITY, f64::min);
         for (at, radius) in radii.iter().enumerate() {
             // Radii of up to twice the smallest share the finest level.
-            let level = ((radius.to_f64() / smallest).log2().ceil() as usize).clamp(1, MAX_LEVELS) - 1;
+            let (mut ratio, mut level) = (radius.to_f64() / smallest, 0);
+            while ratio > 2.0 && level + 1 < MAX_LEVELS {
+                (ratio, level) = (0.5 * ratio, level + 1);
+            }
             while self.levels.len() <= level {
                 self.levels.push(Level::new());
             }
@@ -117,9 +146,11 @@ impl<R: Real> Level<R> {
             self.cells.push(cell);
             self.starts[cell as usize + 1] += 1;
         }
-        for cell in 1..self.starts.len() {
-            self.starts[cell] += self.starts[cell - 1];
-        }
+        (self.sharing, _) = self.starts.iter_mut().fold((0, 0), |(sharing, end), start| {
+            let shared = *start as usize;
+            *start += end;
+            (sharing + shared * shared, *start)
+        });
         // Placing from the last moves each start to where its cell begins, in stable order.
         for (&member, &cell) in self.members.iter().zip(&self.cells).rev() {
             let end = &mut self.starts[cell as usize + 1];
@@ -159,6 +190,7 @@ impl<R: Real> Level<R> {
 
     /// Column and row of a point. Outside the grid they run on past its edges, up to the first from which
     /// no neighbour is inside: a body that flew away has no cell number an integer could hold.
+    #[inline]
     fn cell_of(&self, x: f64, y: f64) -> (i64, i64) {
         let index = |v: f64, origin: f64, cells: i64| {
             ((v - origin) / self.cell_size).floor().clamp(-2.0, cells as f64 + 1.0) as i64

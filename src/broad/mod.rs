@@ -10,11 +10,12 @@
 //! | `off` | no test: all pairs | never |
 //! | `brute` | each body against all later ones, in lanes | up to [`BRUTE_LIMIT`] bodies |
 //! | `sweep` | sorted along the axis of the wider spread, in lanes while ranges overlap | up to [`SWEEP_LIMIT`] |
-//! | `grid` | sorted cells, three runs of whole lanes per body, levels by size | above |
+//! | `grid` | sorted cells, three runs of whole lanes per body, levels by size | above; up to [`CROWDED_LIMIT`] where cells are not crowded |
 //!
-//! Measured on falling circles (µs, 8 lanes; `lamina run circles/N --broad B --skip none`): N = 150 brute 9,
-//! sweep 10, grid 24; 1000: 180, 105, 130; 10,000: sweep 1370, grid 1300; 100,000 in free flight: sweep 22
-//! ms, grid 13 ms. A run of cells holds about one circle, so grid gains nothing from lanes there.
+//! Measured (µs per step, 8 lanes, `lamina run SCENE --steps 200 --broad B`, sweep and grid): `tumbler/1000` 155, 136; `tumbler/2000` 416,
+//! 292; `spinner/2000` 327, 340; `circles/3000` 299, 251; `polygons/5000` 552, 387; `polygons/9000` 1003, 625; falling circles, N = 150:
+//! brute 9, sweep 10, grid 24; 100,000 in free flight: sweep 22 ms, grid 13 ms. A run of cells holds about one circle, so grid
+//! gains nothing from lanes there. What stretches the grid, an outlier far away, crowds its cells: sweep does not mind.
 //!
 //! Huge bodies never enter cells or the sweep: each is tested against all others in lanes. Long ones are found by their circles.
 //!
@@ -39,7 +40,9 @@ use crate::settings::Broad;
 /// Up to this many bodies `auto` compares all with all.
 pub const BRUTE_LIMIT: usize = 400;
 /// Up to this many bodies `auto` sweeps.
-pub const SWEEP_LIMIT: usize = 10_000;
+pub const SWEEP_LIMIT: usize = 1500;
+/// Up to this many bodies `auto` sweeps where cells would be crowded.
+const CROWDED_LIMIT: usize = 10_000;
 
 /// From so many static bodies on, which are not huge, they are kept apart from what may move.
 const MANY_STATICS: usize = 64;
@@ -63,6 +66,7 @@ impl<R: Real> Circles<R> {
         Self { x: Column::new(nowhere), y: Column::new(nowhere), r: Column::new(R::ZERO), slot: Vec::new() }
     }
 
+    #[inline]
     fn len(&self) -> usize {
         self.slot.len()
     }
@@ -77,10 +81,12 @@ impl<R: Real> Circles<R> {
         self.slot.resize(len, 0);
     }
 
+    #[inline(always)]
     fn set(&mut self, at: usize, circle: (R, R, R, u32)) {
         (self.x[at], self.y[at], self.r[at], self.slot[at]) = circle;
     }
 
+    #[inline(always)]
     fn get(&self, at: usize) -> (R, R, R, u32) {
         (self.x[at], self.y[at], self.r[at], self.slot[at])
     }
@@ -247,6 +253,7 @@ impl<R: Real> BroadPhase<R> {
         self.look_over(bodies);
         let frozen = self.frozen.active;
         let searched = if frozen { self.frozen.awake_slots().len() } else { bodies.live() };
+        let gives_way = method == Broad::Auto && searched <= CROWDED_LIMIT;
         let method = Self::resolve(method, searched);
         let keep = keep && method != Broad::Off;
         let along = if frozen { None } else { self.long.all_free() };
@@ -257,7 +264,7 @@ impl<R: Real> BroadPhase<R> {
         // Statics alone are no reason to see paths otherwise than relative to each other.
         let awake = self.some_sleep.then_some(self.frozen.awake_slots());
         self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
-        self.find_afresh::<L>(bodies, method);
+        self.find_afresh::<L>(bodies, method, gives_way);
         self.lists += 1;
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
@@ -266,7 +273,8 @@ impl<R: Real> BroadPhase<R> {
         self.kept
     }
 
-    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad) {
+    /// `gives_way`: the grid does, where its cells are crowded.
+    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, gives_way: bool) {
         self.pairs.clear();
         if method == Broad::Off {
             return all_pairs(bodies, &mut self.pairs);
@@ -274,8 +282,8 @@ impl<R: Real> BroadPhase<R> {
         self.pack_plain(bodies);
         match method {
             Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
-            Broad::Sweep => self.sweep.find::<L>(&self.circles, &mut self.pairs),
-            _ => self.grid.find::<L>(&self.circles, &mut self.pairs),
+            Broad::Grid if self.grid.find::<L>(&self.circles, &mut self.pairs, gives_way) => (),
+            _ => self.sweep.find::<L>(&self.circles, &mut self.pairs),
         }
         if self.frozen.active {
             return self.find_beside_frozen::<L>(bodies);

@@ -30,7 +30,7 @@ impl PairOrder {
         for next in &mut self.next {
             start += std::mem::replace(next, start);
         }
-        self.scratch.clear();
+        // Not cleared first: all of it is written.
         self.scratch.resize(pairs.len(), [0; 2]);
         for &pair in pairs.iter() {
             let next = &mut self.next[pair[which] as usize];

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::sweep::Sweep;
+use super::sweep::{Course, Sweep};
 use crate::seams::Outline;
 
 /// Advances after which a body is stopped where it is known not to have met anything yet.
@@ -24,8 +24,8 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    pub(super) fn new(skin_m: f64, hears_of_gaps: bool, core: f64, sweep: &Sweep, epsilon: f64) -> Self {
-        let coordinate = sweep.x.abs().max_element() + sweep.moved.abs().max_element();
+    pub(super) fn new(skin_m: f64, hears_of_gaps: bool, core: f64, course: &Course, epsilon: f64) -> Self {
+        let coordinate = course.x.abs().max_element() + course.moved.abs().max_element();
         let skin = skin_m.min(core / 50.0).max(16.0 * epsilon * coordinate);
         let (touching, target) = if hears_of_gaps { (2.0 * skin, 0.5 * skin) } else { (0.0, -skin) };
         let tolerance = 0.25 * skin;
@@ -74,7 +74,8 @@ pub(super) enum Approach {
 
 /// See the module's documentation.
 pub(super) fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
-    let (velocity, spin) = (b.moved - a.moved, a.spin_speed() + b.spin_speed());
+    let (of_a, of_b) = (&a.course, &b.course);
+    let (velocity, spin) = (of_b.moved - of_a.moved, of_a.spin_speed() + of_b.spin_speed());
     let (mut t, mut last) = (0.0, DVec2::Y);
     for _ in 0..ADVANCES {
         let (placed_a, placed_b) = (a.at(t), b.at(t));
@@ -82,9 +83,10 @@ pub(super) fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
         let (mut separation, mut nearest, mut wait, mut clear) = (f64::MIN, DVec2::Y, 0.0f64, false);
         // Of the separation along an axis that turns with `b`, of whose shape it then always sees the same.
         let (left, distance) = (1.0 - t, to_b.length());
-        let swerve = b.angle.abs() * left * (2.0 * velocity.length() + b.angle.abs() * distance);
-        let relative = if a.count == 0 { 0.0 } else { (b.angle - a.angle).abs() * a.radius };
-        let turning = |axis: DVec2| relative + swerve - axis.dot(velocity) - b.angle * axis.perp().dot(to_b);
+        let swerve = of_b.angle.abs() * left * (2.0 * velocity.length() + of_b.angle.abs() * distance);
+        let relative = if a.count == 0 { 0.0 } else { (of_b.angle - of_a.angle).abs() * of_a.radius };
+        let turning =
+            |axis: DVec2| relative + swerve - axis.dot(velocity) - of_b.angle * axis.perp().dot(to_b);
         let mut along = |axis: DVec2, turns: bool| {
             let apart = axis.dot(to_b) - placed_a.extent(axis) - placed_b.extent(-axis);
             if separation < apart {
@@ -99,7 +101,7 @@ pub(super) fn approach(a: &Sweep, b: &Sweep, reach: &Reach) -> Approach {
             }
         };
         placed_a.normals().for_each(|axis| along(axis, false));
-        placed_b.normals().for_each(|axis| along(-axis, b.angle != 0.0));
+        placed_b.normals().for_each(|axis| along(-axis, of_b.angle != 0.0));
         if a.count == 0 {
             along(placed_a.towards(&placed_b), false);
         } else if b.count == 0 {

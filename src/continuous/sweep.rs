@@ -3,43 +3,42 @@
 use glam::DVec2;
 
 use super::Reach;
-use crate::body::{Bodies, Placed};
+use crate::body::{Bodies, Form, Placed};
 use crate::each::Each as _;
 use crate::lanes::Real;
 use crate::motion::Fast;
 use crate::shape::MAX_VERTICES;
 use crate::vec2::{Rot, Vec2};
 
-/// A shape and its way through what is left of a step; time runs from 0 to 1.
+/// A body's way through what is left of a step, but for its outline; time runs from 0 to 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sweep {
+pub(super) struct Course {
     /// Centroid at the beginning, metres.
     pub(super) x: DVec2,
-    pub(super) rot: Rot<f64>,
-    /// Metres and rad per step.
+    /// Metres per step.
     pub(super) moved: DVec2,
-    pub(super) angle: f64,
-    /// Radius of a disc; 0 for outlines.
-    pub(super) disc: f64,
     /// Bounding radius.
     pub(super) radius: f64,
-    /// Vertices in the body frame, counter-clockwise.
-    pub(super) vertices: [DVec2; MAX_VERTICES],
-    pub(super) count: usize,
+    /// Rad per step.
+    pub(super) angle: f64,
+    pub(super) rot: Rot<f64>,
+    /// A disc: its spin closes nothing.
+    pub(super) round: bool,
 }
 
-impl Sweep {
+impl Course {
     pub(super) fn of_fast<R: Real>(bodies: &Bodies<R>, fast: &Fast<R>) -> Self {
+        let slot = fast.slot as usize;
         let [x, y, c, s] = fast.start.each(R::to_f64);
         let [dx, dy, angle] = fast.moved.each(R::to_f64);
-        let still = Self::shape(bodies, fast.slot as usize);
         let [x, y] = if bodies.fine.is_some() {
-            let [x, y] = bodies.place(fast.slot as usize);
+            let [x, y] = bodies.place(slot);
             [x - dx, y - dy]
         } else {
             [x, y]
         };
-        Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, ..still }
+        let (radius, round) = (bodies.radius[slot].to_f64(), bodies.form(slot) == Form::Circle);
+        Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, radius, round }
     }
 
     /// The poses of obstacles are those at the step's end: a kinematic one came there by its velocity.
@@ -49,21 +48,8 @@ impl Sweep {
             [&bodies.c, &bodies.s, &bodies.vx, &bodies.vy, &bodies.w].each(|column| column[slot].to_f64());
         let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
         let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
-        Self { x, rot, moved, angle, ..Self::shape(bodies, slot) }
-    }
-
-    pub(super) fn shape<R: Real>(bodies: &Bodies<R>, slot: usize) -> Self {
-        let (vertices, count) = bodies.corners_body(slot);
-        Self {
-            x: DVec2::ZERO,
-            rot: Rot { c: 1.0, s: 0.0 },
-            moved: DVec2::ZERO,
-            angle: 0.0,
-            disc: bodies.disc(slot),
-            radius: bodies.radius[slot].to_f64(),
-            vertices,
-            count,
-        }
+        let (radius, round) = (bodies.radius[slot].to_f64(), bodies.form(slot) == Form::Circle);
+        Self { x, rot, moved, angle, radius, round }
     }
 
     pub(super) fn is_finite(&self) -> bool {
@@ -81,14 +67,9 @@ impl Sweep {
         (from + way * nearest).length_squared() <= near * near
     }
 
-    /// The disc about the centroid.
-    pub(super) fn core(&self, radius: f64) -> Self {
-        Self { disc: radius, radius, count: 0, ..*self }
-    }
-
     /// What spin can close along any axis: a disc's none.
     pub(super) fn spin_speed(&self) -> f64 {
-        if self.count == 0 { 0.0 } else { self.angle.abs() * self.radius }
+        if self.round { 0.0 } else { self.angle.abs() * self.radius }
     }
 
     /// What is left of the way from a time on.
@@ -106,16 +87,47 @@ impl Sweep {
             ..*self
         }
     }
+}
+
+/// A shape on its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweep {
+    pub(super) course: Course,
+    /// Radius of a disc; 0 for outlines.
+    disc: f64,
+    /// Vertices in the body frame, counter-clockwise.
+    vertices: [DVec2; MAX_VERTICES],
+    pub(super) count: usize,
+}
+
+impl Sweep {
+    /// The body in a slot, on this way.
+    pub(super) fn of<R: Real>(bodies: &Bodies<R>, slot: usize, course: Course) -> Self {
+        let (vertices, count) = bodies.corners_body(slot);
+        Self { course, disc: bodies.disc(slot), vertices, count }
+    }
+
+    /// The disc about the centroid.
+    pub(super) fn core(&self, radius: f64) -> Self {
+        let course = Course { radius, round: true, ..self.course };
+        Self { course, disc: radius, count: 0, vertices: self.vertices }
+    }
+
+    /// The same on another way.
+    pub(super) fn on(&self, course: Course) -> Self {
+        Self { course, ..*self }
+    }
 
     #[inline]
     pub(super) fn at(&self, t: f64) -> Placed {
-        let rot = self.rot.turned(self.angle * t);
+        let Course { x, rot, moved, angle, .. } = self.course;
+        let rot = rot.turned(angle * t);
         let turned = |v: DVec2| {
             let v = rot.apply(Vec2::new(v.x, v.y));
             DVec2::new(v.x, v.y)
         };
         Placed {
-            centre: self.x + self.moved * t,
+            centre: x + moved * t,
             disc: self.disc,
             corners: self.vertices.each(turned),
             count: self.count,
@@ -133,7 +145,7 @@ pub(super) struct Wall {
 
 impl Wall {
     pub(super) fn new<R: Real>(bodies: &Bodies<R>, slot: usize, dt_secs: f64) -> Self {
-        let sweep = Sweep::of_obstacle(bodies, slot, dt_secs);
+        let sweep = Sweep::of(bodies, slot, Course::of_obstacle(bodies, slot, dt_secs));
         let placed = sweep.at(0.0);
         let mut faces = [(DVec2::ZERO, 0.0); MAX_VERTICES];
         for (face, normal) in faces.iter_mut().zip(placed.normals()) {
@@ -144,9 +156,10 @@ impl Wall {
 
     /// Does a face promise that `body` does not come near in this step, whatever its outline? See [`approach`],
     /// whose first advance would say so too.
-    pub(super) fn keeps_clear(&self, body: &Sweep, reach: &Reach) -> bool {
-        let (from, way) = (body.x - self.sweep.x, body.moved - self.sweep.moved);
-        let spin = body.spin_speed() + self.sweep.spin_speed();
+    pub(super) fn keeps_clear(&self, body: &Course, reach: &Reach) -> bool {
+        let course = &self.sweep.course;
+        let (from, way) = (body.x - course.x, body.moved - course.moved);
+        let spin = body.spin_speed() + course.spin_speed();
         self.faces[..self.sweep.count].iter().any(|&(normal, extent)| {
             let apart = normal.dot(from) - extent - body.radius;
             apart > reach.touching && apart - reach.clear >= spin - normal.dot(way)

@@ -171,11 +171,8 @@ impl<R: Real> Narrow<R> {
     pub fn rebuild(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]]) {
         self.manifolds.rebuild(pairs, |[a, b]| {
             let (form_a, form_b) = (bodies.form(a as usize), bodies.form(b as usize));
-            if form_a <= form_b {
-                (bucket_of(form_a, form_b), [a, b])
-            } else {
-                (bucket_of(form_b, form_a), [b, a])
-            }
+            let flips = form_a > form_b;
+            (if flips { bucket_of(form_b, form_a) } else { bucket_of(form_a, form_b) }, flips)
         });
     }
 

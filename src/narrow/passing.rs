@@ -6,6 +6,8 @@
 //! is given what its outline may gain by that. Asked where bodies are fast enough that a margin looks ahead for them; slower ones
 //! come no nearer to a corner than its margin in a step.
 
+use glam::DVec2;
+
 use crate::body::{Bodies, BodyKind, Form};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
@@ -57,14 +59,12 @@ fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride
     if length <= separation {
         return false;
     }
-    let across = [-wy / length, wx / length];
-    let ([ax, ay], [bx, by]) = (bodies.place(a), bodies.place(b));
-    let apart = ((bx - ax) * across[0] + (by - ay) * across[1]).abs();
-    let side = if (bx - ax) * across[0] + (by - ay) * across[1] < 0.0 { -1.0 } else { 1.0 };
-    let along = across.each(|way| way * side);
+    let across = DVec2::new(-wy / length, wx / length);
+    let apart = (DVec2::from(bodies.place(b)) - DVec2::from(bodies.place(a))).dot(across);
     // From A towards B, and from B towards A.
-    let shadows = extent(bodies, a, along) + extent(bodies, b, along.each(|way| -way));
-    apart > shadows + turned[0] + turned[1]
+    let along = if apart < 0.0 { -across } else { across };
+    let shadows = bodies.extent(a, along) + bodies.extent(b, -along);
+    apart.abs() > shadows + turned[0] + turned[1]
 }
 
 /// How fast turning may carry a body's outline outwards, m/s.
@@ -74,17 +74,4 @@ fn turning<R: Real>(bodies: &Bodies<R>, slot: usize) -> f64 {
     } else {
         (bodies.w[slot] * bodies.radius[slot]).to_f64().abs()
     }
-}
-
-/// How far a body reaches from its centroid along a direction, metres.
-fn extent<R: Real>(bodies: &Bodies<R>, slot: usize, along: [f64; 2]) -> f64 {
-    let placed = bodies.placed(slot);
-    if placed.count == 0 {
-        return placed.disc;
-    }
-    let mut extent = f64::MIN;
-    for corner in placed.corners() {
-        extent = extent.max(corner.x * along[0] + corner.y * along[1]);
-    }
-    extent
 }

@@ -280,7 +280,8 @@ fn every_method_finds_the_defined_pairs_in_f64() {
 #[test]
 fn auto_changes_its_method_without_changing_its_pairs() {
     for world in WORLDS {
-        for count in [BRUTE_LIMIT, BRUTE_LIMIT + 150] {
+        // A sixth is taken out.
+        for count in [BRUTE_LIMIT, BRUTE_LIMIT + 150, SWEEP_LIMIT * 4 / 3] {
             let bodies = build::<f32>(world, count, 5);
             let pairs = all_methods_agree(&bodies, 0.0, &format!("{world:?}/{count}"));
             meets_the_definition(&bodies, &pairs, 0.0);
@@ -289,6 +290,22 @@ fn auto_changes_its_method_without_changing_its_pairs() {
     assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, BRUTE_LIMIT), Broad::Brute);
     assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, BRUTE_LIMIT + 1), Broad::Sweep);
     assert_eq!(BroadPhase::<f32>::resolve(Broad::Auto, SWEEP_LIMIT + 1), Broad::Grid);
+}
+
+/// Cells that outliers crowd are left to the sweep for some lists, and tried again.
+#[test]
+fn a_grid_that_gives_way_and_comes_back_loses_no_pair() {
+    let worlds = [World::Clustered, World::Equal, World::Clustered];
+    let worlds = worlds.map(|world| build::<f32>(world, SWEEP_LIMIT * 4 / 3, 11));
+    let mut kept = BroadPhase::<f32>::default();
+    for bodies in &worlds {
+        let want = find(8, bodies, Broad::Brute, 0.05);
+        for list in 0..100 {
+            kept.forget();
+            f32::find(&mut kept, 8, bodies, Broad::Auto, 0.05);
+            assert!(kept.pairs() == want, "list {list}: {} pairs, not {}", kept.pairs().len(), want.len());
+        }
+    }
 }
 
 #[test]
