@@ -76,7 +76,7 @@
 //! # Levers
 //! Instructions per step of 150 settled polygons (270 contacts), `soft`, 4 substeps, by callgrind, of a pile that is left
 //! alone: steps 600 to 620 of `lamina run polygons/150` (181,414 at commit 61f47dc, 181,737 in steps 1800 to 1820). The
-//! gate's scene of the same name counts 284,868 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
+//! gate's scene of the same name counts 285,838 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
 //! again, and finds and prepares its contacts in every step.
 //!
 //! | lever | state |
@@ -111,6 +111,8 @@
 //!   instruction the compiler makes of it at width 1. Positions are integrated so.
 //! - `array::from_fn` inside a gather, or a closure called four times in one: left as calls by the compiler, 12 and 7 % of a step.
 //! - Slots of a batch handed to a pass by a function instead of copied in it: passes 15 to 20 % slower.
+//! - `zip` over slots in a gather of joints: left as calls, twice the instructions of placing them; a loop over `WIDTH` a third fewer
+//!   than the closure there was.
 //! - Columns' slices taken inside a loop over lanes that also stores: looked up again after every store, 6 to 12 % more
 //!   instructions of a relaxation and of integrating positions. `L::WIDTH` entries from `at * L::WIDTH` instead of a range in
 //!   `load_four`: 7 % more of a prediction.

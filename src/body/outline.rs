@@ -21,6 +21,7 @@ pub(crate) struct Placed {
 
 impl Placed {
     /// The corners there are.
+    #[inline]
     pub(crate) fn corners(&self) -> &[DVec2] {
         &self.corners[..self.count]
     }

@@ -13,7 +13,8 @@ use crate::column::Column;
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, Real};
 
-/// Skin over the median radius of movable bodies.
+/// Skin over the median radius of movable bodies. From 0.15 to 0.5 `tumbler/2000`, `spinner/2000` and falling polygons take as long,
+/// with 1.2 up to a tenth longer; falling circles, which are cheap to look at, 0.82 of it with 0.8.
 const SKIN: f64 = 0.15;
 /// Steps without a skin after one that lasted a single step.
 const PAUSE: u32 = 16;

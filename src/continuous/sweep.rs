@@ -38,7 +38,7 @@ impl Course {
             [x, y]
         };
         let (radius, round) = (bodies.radius[slot].to_f64(), bodies.form(slot) == Form::Circle);
-        Self { x: DVec2::new(x, y), rot: Rot { c, s }, moved: DVec2::new(dx, dy), angle, radius, round }
+        Self { x: DVec2::new(x, y), moved: DVec2::new(dx, dy), radius, angle, rot: Rot { c, s }, round }
     }
 
     /// The poses of obstacles are those at the step's end: a kinematic one came there by its velocity.
@@ -49,7 +49,7 @@ impl Course {
         let (moved, angle) = (DVec2::new(vx, vy) * dt_secs, w * dt_secs);
         let (x, rot) = (DVec2::new(x, y) - moved, Rot { c, s }.turned(-angle));
         let (radius, round) = (bodies.radius[slot].to_f64(), bodies.form(slot) == Form::Circle);
-        Self { x, rot, moved, angle, radius, round }
+        Self { x, moved, radius, angle, rot, round }
     }
 
     pub(super) fn is_finite(&self) -> bool {
@@ -68,6 +68,7 @@ impl Course {
     }
 
     /// What spin can close along any axis: a disc's none.
+    #[inline]
     pub(super) fn spin_speed(&self) -> f64 {
         if self.round { 0.0 } else { self.angle.abs() * self.radius }
     }

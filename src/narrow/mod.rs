@@ -269,7 +269,7 @@ impl<R: Real> Narrow<R> {
     }
 
     /// All manifolds, and the places of the pairs last looked at.
-    pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = &[u32]>) {
+    pub fn found(&mut self) -> (&mut Manifolds<R>, impl Iterator<Item = &[u32]> + Clone) {
         (&mut self.manifolds, looked_at(&self.todo, &self.seamed))
     }
 
@@ -391,7 +391,7 @@ impl<R: Real> Narrow<R> {
     }
 }
 
-fn looked_at<'a>(todo: &'a [Todo; 6], seamed: &'a [u32]) -> impl Iterator<Item = &'a [u32]> {
+fn looked_at<'a>(todo: &'a [Todo; 6], seamed: &'a [u32]) -> impl Iterator<Item = &'a [u32]> + Clone {
     todo.iter().map(|todo| &todo.place[..todo.len]).chain(std::iter::once(seamed))
 }
 

@@ -52,15 +52,21 @@ fn pass<R: Real>(bodies: &Bodies<R>, [a, b]: [usize; 2], separation: f64, stride
     let way = |column: &crate::column::Column<R>, k: usize| {
         (column[b] - column[a]).to_f64() * secs + fallen * stride.fallen[k].to_f64()
     };
-    let [wx, wy] = [way(&bodies.vx, 0), way(&bodies.vy, 1)];
-    let length = wx.hypot(wy);
+    let way = DVec2::new(way(&bodies.vx, 0), way(&bodies.vy, 1));
+    // Not a bare root: its last bit decides where discs stand exactly one above the other.
+    let length = way.x.hypot(way.y);
     let turned = [a, b].each(|slot| turning(bodies, slot) * secs);
     // What does not come that far closes nothing, and where it goes says nothing: resting bodies tremble.
     if length <= separation {
         return false;
     }
-    let across = DVec2::new(-wy / length, wx / length);
+    let across = way.perp() / length;
     let apart = (DVec2::from(bodies.place(b)) - DVec2::from(bodies.place(a))).dot(across);
+    // No shadow is longer than its bounding circle's, but for rounding.
+    let most = (bodies.radius[a] + bodies.radius[b]).to_f64() * (1.0 + 1e-5);
+    if apart.abs() > most + turned[0] + turned[1] {
+        return true;
+    }
     // From A towards B, and from B towards A.
     let along = if apart < 0.0 { -across } else { across };
     let shadows = bodies.extent(a, along) + bodies.extent(b, -along);

@@ -203,6 +203,13 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         self.stale[lane as usize / L::WIDTH] |= 1 << (lane as usize % L::WIDTH);
     }
 
+    /// Notes that the manifolds of all lanes in use were found anew.
+    pub(super) fn touch_all(&mut self) {
+        for (at, stale) in self.stale.iter_mut().enumerate() {
+            *stale = (1 << L::WIDTH.min(self.used - at * L::WIDTH)) - 1;
+        }
+    }
+
     /// A lane's pair has another place.
     pub(super) fn rename(&mut self, lane: u32, place: u32) {
         self.place[lane as usize] = place;

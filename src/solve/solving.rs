@@ -198,7 +198,7 @@ impl<L: Lanes> Solving<L> {
     pub fn prepare<'a>(
         &mut self,
         bodies: &Bodies<L::Elem>,
-        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = &'a [u32]>),
+        (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = &'a [u32]> + Clone),
         changed: bool,
         motion: &Motion<L::Elem>,
     ) {
@@ -206,9 +206,11 @@ impl<L: Lanes> Solving<L> {
         if changed || self.stream.is_outdated() {
             self.stream.arrange(bodies, manifolds, &self.substep_groups);
         }
-        let homes = manifolds.homes();
-        for places in looked_at {
-            for &place in places {
+        if looked_at.clone().map(<[u32]>::len).sum::<usize>() == manifolds.pairs() {
+            self.stream.touch_all();
+        } else {
+            let homes = manifolds.homes();
+            for &place in looked_at.flatten() {
                 self.stream.touch(homes[place as usize]);
             }
         }

@@ -236,6 +236,15 @@ impl<L: Lanes> Stream<L> {
         }
     }
 
+    /// Notes that all manifolds were found anew.
+    pub fn touch_all(&mut self) {
+        for &number in &self.order {
+            let list = &mut self.lists[number as usize];
+            list.two.touch_all();
+            list.one.touch_all();
+        }
+    }
+
     /// Makes lanes of the manifolds found anew; `inverse_masses` has rows 1/m, 1/I, –, – per slot, `moved` the
     /// displacements that gaps have yet to hear of: of those in the same batches they do now.
     pub fn prepare(
