@@ -76,7 +76,7 @@
 //! # Levers
 //! Instructions per step of 150 settled polygons (270 contacts), `soft`, 4 substeps, by callgrind, of a pile that is left
 //! alone: steps 600 to 620 of `lamina run polygons/150` (181,414 at commit 61f47dc, 181,737 in steps 1800 to 1820). The
-//! gate's scene of the same name counts 285,838 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
+//! gate's scene of the same name counts 284,559 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
 //! again, and finds and prepares its contacts in every step.
 //!
 //! | lever | state |

@@ -33,17 +33,18 @@
 //! | linreg, with syn 1 | 5 | slopes | gone: two numbers of statrs |
 //! | comfy-table | 4 | tables in the terminal | without crossterm, of which nothing was used |
 //!
-//! The engine itself, processor seconds of `touch src/lib.rs; cargo build --release -p lamina2d`, one after the other:
+//! The engine itself, ratios of the processor seconds of `touch src/lib.rs; cargo build --release -p lamina2d` (136 s), one after the
+//! other:
 //!
-//! | codegen units, LTO among them | s | instructions of 150 settled polygons |
+//! | codegen units, LTO among them | time | instructions of 150 settled polygons |
 //! |---|---|---|
-//! | 16, thin (cargo's default) | 288 | 1 |
-//! | 16, none | 199 | as the next |
-//! | 4, none (kept) | 164 | 1.16 as it was; 1.02 since hot paths do without `zip`, `copy_from_slice`, `Peekable` and closures behind `&mut`, which the standard library leaves as calls |
-//! | 4, thin | 1.31 of 4, none | not counted |
-//! | 1 | 328, on one core | not counted |
+//! | 16, thin (cargo's default, kept) | 1 | 1 |
+//! | 16, none | 0.7 before copies went | as the next |
+//! | 4, none | 0.57 then, 0.95 since what knows no lanes is compiled once | 1.16; 1.02 since hot paths do without `zip`, `copy_from_slice`, `Peekable` and closures behind `&mut`, which the standard library leaves as calls |
+//! | 4, thin | 0.75 then | not counted |
+//! | 1 | 1.1 then, on one core | not counted |
 //!
-//! The baselines of [`thesis`] would lose more by it than the engine: `tidy` 1.1 to 1.7 times. This package is therefore one
+//! The baselines of [`thesis`] lost more without thin LTO than the engine: `tidy` 1.1 to 1.7 times. This package is therefore one
 //! unit, and their small functions are inlined by name: as fast as with thin LTO (100 polygons, least of three alternating
 //! runs, ms: tidy 0.088 for 0.096, thesis 0.29 for 0.29).
 //!
