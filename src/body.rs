@@ -18,6 +18,7 @@
 mod check;
 mod drive;
 mod fine;
+mod force;
 mod grow;
 mod kind;
 mod outline;
@@ -361,47 +362,6 @@ impl<R: Real> Bodies<R> {
         }
     }
 
-    /// Adds a linear impulse (N·s) at the centroid and an angular one (N·m·s).
-    ///
-    /// # Errors
-    /// An id whose body is gone, a body that is not dynamic, an impulse that is not finite.
-    pub fn apply_impulse(&mut self, id: BodyId, linear: [f64; 2], angular: f64) -> Result<(), BodyError> {
-        let slot = self.check_alive(id)?;
-        if self.kind[slot] != BodyKind::Dynamic {
-            return Err(BodyError::NotDynamic(id.slot));
-        }
-        for value in [linear[0], linear[1], angular] {
-            if !R::from_f64(value).is_finite() {
-                return Err(BodyError::NonFiniteInSlot { slot: id.slot, field: "impulse", value });
-            }
-        }
-        self.vx[slot] += R::from_f64(linear[0]) * self.inv_mass[slot];
-        self.vy[slot] += R::from_f64(linear[1]) * self.inv_mass[slot];
-        self.w[slot] += R::from_f64(angular) * self.inv_inertia[slot];
-        Ok(())
-    }
-
-    /// Sets the constant force (N) and torque (N·m) on a body.
-    ///
-    /// # Errors
-    /// An id whose body is gone, a value that is not finite.
-    pub fn set_force(&mut self, id: BodyId, force: [f64; 2], torque: f64) -> Result<(), BodyError> {
-        let slot = self.check_alive(id)?;
-        for (field, value) in [("force", force[0]), ("force", force[1]), ("torque", torque)] {
-            if !R::from_f64(value).is_finite() {
-                return Err(BodyError::NonFiniteInSlot { slot: id.slot, field, value });
-            }
-        }
-        self.write_force(slot, [force[0], force[1], torque]);
-        self.revision += 1;
-        Ok(())
-    }
-
-    /// The constant force (N, N) and torque (N·m) on the body in a slot.
-    pub fn force_on(&self, slot: usize) -> [R; 3] {
-        self.force.as_ref().map_or([R::ZERO; 3], |columns| columns.each_ref().each(|column| column[slot]))
-    }
-
     /// Does some body go round a pivot?
     pub fn is_driven(&self) -> bool {
         !self.drives.is_empty()
@@ -435,17 +395,5 @@ impl<R: Real> Bodies<R> {
                 }
             }
         }
-    }
-
-    /// The outline of the body in a slot about its centroid, world axes, in `f64`; empty for circles.
-    pub fn outline(&self, slot: usize) -> Vec<[f64; 2]> {
-        let (c, s) = (self.c[slot].to_f64(), self.s[slot].to_f64());
-        self.outline_body(slot).into_iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
-    }
-
-    /// [`Bodies::outline`] in the body frame.
-    pub fn outline_body(&self, slot: usize) -> Vec<[f64; 2]> {
-        let (corners, count) = self.corners_body(slot);
-        corners[..count].iter().map(glam::DVec2::to_array).collect()
     }
 }

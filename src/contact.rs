@@ -10,13 +10,15 @@
 //! Bytes per pair in f32: geometry 32, gap 16, impulse 16, code 4, slots 8, home 8. One-point and two-point
 //! manifolds have the same rows; what is unused is 0 or not looked at.
 
+mod places;
 mod rest;
 mod row;
 mod table;
 
-use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real, set_lanes};
+use crate::lanes::{Lanes, ROW, Real};
 use table::PairTable;
 
+pub use places::{Places, Recoded};
 pub use row::{CONTACT_COLUMNS, ContactRow, GapsAndImpulses};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
@@ -310,95 +312,6 @@ impl<R: Real> Manifolds<R> {
     /// The same, to change.
     pub fn homes_mut(&mut self) -> &mut [Home] {
         &mut self.now.home
-    }
-
-    /// Writes what the narrow phase found for `WIDTH` pairs: rows given as lanes, codes ≥ 0.
-    #[inline(always)]
-    pub fn write<L: Lanes<Elem = R>>(
-        &mut self,
-        places: &[u32],
-        code: L,
-        geometry: [L; ROW],
-        gap: [L; 4],
-        scratch: &mut [[R; ROW]; 16],
-    ) {
-        let (first, last) = (places[0] as usize, places[L::WIDTH - 1] as usize);
-        if last < self.pairs() && last - first == L::WIDTH - 1 {
-            // Neighbours, as all are where every pair is looked at: rows go straight to their places.
-            self.write_neighbours(first, code, geometry, gap);
-        } else {
-            self.write_scattered(places, code, geometry, gap, scratch);
-        }
-    }
-
-    /// Out of line, as [`Manifolds::write_apart`]: every bucket at every width would hold its copy.
-    #[inline(never)]
-    fn write_scattered<L: Lanes<Elem = R>>(
-        &mut self,
-        places: &[u32],
-        code: L,
-        geometry: [L; ROW],
-        gap: [L; 4],
-        scratch: &mut [[R; ROW]; 16],
-    ) {
-        L::store_rows(geometry, scratch);
-        L::scatter_fours(gap, self.now.gap.fours_mut(), places);
-        let (codes, rows) = (code.to_array(), self.now.geometry.rows_mut());
-        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
-            rows[place as usize] = scratch[lane];
-        }
-        for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
-            self.set_code(place as usize, codes[lane]);
-        }
-    }
-
-    #[inline(always)]
-    fn write_neighbours<L: Lanes<Elem = R>>(
-        &mut self,
-        first: usize,
-        code: L,
-        geometry: [L; ROW],
-        gap: [L; 4],
-    ) {
-        let places = first..first + L::WIDTH;
-        L::store_rows(geometry, &mut self.now.geometry.rows_mut()[places.clone()]);
-        L::scatter_fours(gap, &mut self.now.gap.fours_mut()[places.clone()], &IN_ORDER);
-        let codes = &mut self.now.code.padded_mut()[places];
-        let old = L::load(codes);
-        let changed = (!old.equals(code)).bits();
-        if changed != 0 {
-            code.store(codes);
-            let (old, fresh) = (old.to_array(), code.to_array());
-            for lane in set_lanes(changed) {
-                self.recode(first + lane, Code::of(old[lane]), Code::of(fresh[lane]));
-            }
-        }
-    }
-
-    /// Notes that `WIDTH` pairs do not touch.
-    #[inline(never)]
-    pub fn write_apart(&mut self, places: &[u32]) {
-        for &place in places {
-            self.set_code(place as usize, R::ZERO);
-        }
-    }
-
-    #[inline(always)]
-    fn set_code(&mut self, place: usize, fresh: R) {
-        let old = std::mem::replace(&mut self.now.code[place], fresh);
-        // How often padding lanes write to the spill place depends on the width: nothing may follow from it.
-        if old != fresh && place < self.pairs() {
-            self.recode(place, Code::of(old), Code::of(fresh));
-        }
-    }
-
-    /// A manifold has other points or features than before.
-    #[inline(never)]
-    fn recode(&mut self, place: usize, before: Code, now: Code) {
-        self.changed |= before.points() != now.points();
-        if before != now {
-            self.recoded.push(Changed { place: place as u32, before, now });
-        }
     }
 
     /// Impulses of a pair's row stay with their features, new points begin at 0.

@@ -3,7 +3,7 @@
 //! A body is fast when a point of it may have moved further in one step than half its inner radius
 //! ([`Bodies::core`]); the passes that end a step note such bodies ([`Fast`]), at one comparison per lane value.
 //! Each goes its way in a straight line at even speed and spin until it meets another body: there both get the impulse of
-//! their restitution and friction, and go on with what is left of the step, where either may meet again (eight times).
+//! their restitution and friction, and go on with what is left of the step, where either may meet again ([`way::MEETINGS`]).
 //! What happens within a step happens in the order of its instants; ties go by slots.
 //! A jointed body stops where it meets something and keeps its velocity, and so does what it hits: the next step solves the impact
 //! together with the joints. Bounced as if it were free, a ball on a rod lost a twelfth of its energy.
@@ -37,6 +37,7 @@
 //! bounding circle in its place: a wall's own circle is as wide as the wall is long and turns nothing away. A face
 //! that promises a whole step to the circle promises it to the body, so the search would have said the same.
 
+mod ahead;
 mod approach;
 mod neighbours;
 mod respond;
@@ -51,7 +52,7 @@ use crate::lanes::Real;
 use crate::motion::{Fast, FastBodies};
 use crate::seams::Seams;
 
-use approach::{Approach, Reach, approach, impact, touches};
+use approach::Reach;
 use neighbours::Neighbours;
 use respond::Motion;
 use sweep::{Course, Sweep, Wall};
@@ -268,65 +269,6 @@ impl<R: Real> Continuous<R> {
             beside.extend(self.way_of[other].checked_sub(1));
         }
         beside
-    }
-
-    fn wall_ahead(
-        &self,
-        bodies: &Bodies<R>,
-        around: &Around<'_, R>,
-        way: usize,
-        wall_number: usize,
-    ) -> Option<Meeting> {
-        let Way { slot, course, since, reach, .. } = &self.ways[way];
-        let (other, wall) = (self.obstacles[wall_number], &self.walls[wall_number]);
-        if *since == 0.0 && wall.keeps_clear(course, reach) {
-            return None;
-        }
-        let wall_course = wall.sweep.course.after(*since);
-        if !course.may_meet(&wall_course, reach) {
-            return None;
-        }
-        let pair = [other.min(*slot as u32), other.max(*slot as u32)];
-        if !bodies.may_collide(*slot, other as usize) || around.apart.binary_search(&pair).is_ok() {
-            return None;
-        }
-        let sweep = Sweep::of(bodies, *slot, *course);
-        let (t, axis) = impact(&sweep, &wall.sweep.on(wall_course), reach)?;
-        let outline = around.seams.of(other);
-        let met = outline.map_or(Some(axis), |outline| touches(&sweep, t, outline, reach))?;
-        Some(Meeting { at: since + t * (1.0 - since), axis: met, with: Other::Wall(wall_number) })
-    }
-
-    fn body_ahead(&self, bodies: &Bodies<R>, way: usize, other: usize) -> Option<Meeting> {
-        let (own, their) = (&self.ways[way], &self.ways[other]);
-        // Both from the later of the instants they were last seen at.
-        let since = own.since.max(their.since);
-        // Borrowed where they are, as most are: copies took half of this.
-        let (own_later, their_later);
-        let own_course = if own.since == since {
-            &own.course
-        } else {
-            own_later = own.from(since);
-            &own_later
-        };
-        let their_course = if their.since == since {
-            &their.course
-        } else {
-            their_later = their.from(since);
-            &their_later
-        };
-        // Bodies that come no further than half of both are deep do not pass through each other: the next step's contact holds.
-        let length = (own_course.moved - their_course.moved).length();
-        if length <= own.reach.core + their.reach.core || !own_course.may_meet(their_course, &own.reach) {
-            return None;
-        }
-        let of = |way: &Way, course: &Course| Sweep::of(bodies, way.slot, *course);
-        match approach(&of(own, own_course), &of(their, their_course), &own.reach) {
-            Approach::Meets(t, axis) => {
-                Some(Meeting { at: since + t * (1.0 - since), axis, with: Other::Way(other) })
-            }
-            Approach::Passes | Approach::Touching => None,
-        }
     }
 
     /// The body that meets something first, by slot where several do.

@@ -25,6 +25,7 @@
 //! [`Demand`].
 
 mod quiet;
+mod settle;
 
 use std::ops::Range;
 
@@ -72,30 +73,43 @@ pub struct Islands<R: Real> {
     /// Of a body that sleeps, the next one of its island: a ring, so that waking costs what the island has.
     next: Vec<u32>,
     quiet: Quiet<R>,
-    /// Islands in the making.
-    sets: Sets,
-    bits: Vec<u8>,
+    making: Making,
     kinematic: Vec<u32>,
-    /// Of links, while they are asked.
-    demands: Vec<Demand>,
-    /// Metres, by root, while demands are met.
-    reach: Vec<f64>,
     /// Slots that hang together without touching.
     links: Vec<[u32; 2]>,
     /// Those of the last look, while they are compared.
     last_links: Vec<[u32; 2]>,
-    moving_kinematic: usize,
-    dynamic: usize,
-    sleeping: usize,
-    rings: usize,
+    census: Census,
     /// Kinematic bodies may have been given other velocities.
     pushed: bool,
-    /// A link's demand was not met yet that time may meet.
-    waits: bool,
     /// All times are 0.
     fresh: bool,
     /// How often who is awake has changed.
     changes: u64,
+}
+
+/// Islands in the making.
+#[derive(Clone, Debug, Default)]
+struct Making {
+    sets: Sets,
+    /// By root, see [`trait_bits`].
+    bits: Vec<u8>,
+    /// Of links, while they are asked.
+    demands: Vec<Demand>,
+    /// Metres, by root, while demands are met.
+    reach: Vec<f64>,
+    /// A link's demand was not met yet that time may meet.
+    waits: bool,
+}
+
+/// How many there are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Census {
+    dynamic: usize,
+    moving_kinematic: usize,
+    /// Bodies that sleep, and their islands.
+    sleeping: usize,
+    rings: usize,
 }
 
 impl<R: Real> Default for Islands<R> {
@@ -105,19 +119,12 @@ impl<R: Real> Default for Islands<R> {
             awake: Vec::new(),
             next: Vec::new(),
             quiet: Quiet::default(),
-            sets: Sets::default(),
-            bits: Vec::new(),
+            making: Making::default(),
             kinematic: Vec::new(),
-            demands: Vec::new(),
-            reach: Vec::new(),
             links: Vec::new(),
             last_links: Vec::new(),
-            moving_kinematic: 0,
-            dynamic: 0,
-            sleeping: 0,
-            rings: 0,
+            census: Census::default(),
             pushed: false,
-            waits: false,
             fresh: true,
             changes: 0,
         }
@@ -127,15 +134,15 @@ impl<R: Real> Default for Islands<R> {
 impl<R: Real> Islands<R> {
     /// Bodies that sleep.
     pub fn sleeping(&self) -> usize {
-        self.sleeping
+        self.census.sleeping
     }
     /// Islands that sleep.
     pub fn len(&self) -> usize {
-        self.rings
+        self.census.rings
     }
     /// Nobody sleeps?
     pub fn is_empty(&self) -> bool {
-        self.rings == 0
+        self.census.rings == 0
     }
     /// [`Islands::awake`] where somebody sleeps; `None` where all are to be reckoned with.
     pub fn awake_beside_sleepers(&self) -> Option<&[bool]> {
@@ -165,15 +172,15 @@ impl<R: Real> Islands<R> {
         self.asleep.resize(len, false);
         self.awake.resize(len, false);
         self.next.resize(len, 0);
-        self.bits.resize(len, 0);
+        self.making.bits.resize(len, 0);
         self.quiet.resize(len);
-        self.reach.resize(len, 0.0);
+        self.making.reach.resize(len, 0.0);
         self.kinematic.clear();
-        self.dynamic = 0;
+        self.census.dynamic = 0;
         for slot in 0..len {
             let dynamic = bodies.kind(slot) == BodyKind::Dynamic;
             self.awake[slot] = dynamic && !self.asleep[slot];
-            self.dynamic += usize::from(dynamic);
+            self.census.dynamic += usize::from(dynamic);
             if bodies.kind(slot) == BodyKind::Kinematic {
                 self.kinematic.push(slot as u32);
             }
@@ -201,15 +208,17 @@ impl<R: Real> Islands<R> {
     /// Can a step be left out, because all that can move sleeps and no kinematic body moves?
     pub fn is_still(&mut self, bodies: &Bodies<R>) -> bool {
         if std::mem::take(&mut self.pushed) || bodies.is_driven() {
-            self.moving_kinematic = 0;
+            self.census.moving_kinematic = 0;
             for &slot in &self.kinematic {
                 let at = slot as usize;
                 let moves = !is_at_rest(bodies, at);
-                self.moving_kinematic += usize::from(moves);
+                self.census.moving_kinematic += usize::from(moves);
                 self.changes += u64::from(std::mem::replace(&mut self.awake[at], moves) != moves);
             }
         }
-        self.sleeping > 0 && self.sleeping == self.dynamic && self.moving_kinematic == 0
+        self.census.sleeping > 0
+            && self.census.sleeping == self.census.dynamic
+            && self.census.moving_kinematic == 0
     }
 
     /// Wakes the island of the body in a slot; the time of a body that does not sleep begins anew.
@@ -222,13 +231,13 @@ impl<R: Real> Islands<R> {
         loop {
             (self.asleep[at], self.awake[at]) = (false, true);
             self.quiet.begin(at);
-            self.sleeping -= 1;
+            self.census.sleeping -= 1;
             at = self.next[at] as usize;
             if at == slot {
                 break;
             }
         }
-        self.rings -= 1;
+        self.census.rings -= 1;
         self.changes += 1;
     }
 
@@ -263,7 +272,7 @@ impl<R: Real> Islands<R> {
 
     /// Wakes the islands that something awake touches or is linked to. Did it wake any?
     pub fn wake_touched(&mut self, manifolds: &Manifolds<R>) -> bool {
-        let before = self.rings;
+        let before = self.census.rings;
         // A pair that touches and does not rest has an end that is awake.
         for &place in manifolds.touching() {
             self.wake_ends(manifolds.slots(place as usize));
@@ -275,7 +284,7 @@ impl<R: Real> Islands<R> {
             }
         }
         self.links = links;
-        self.rings != before
+        self.census.rings != before
     }
 
     fn wake_ends(&mut self, ends: [u32; 2]) {
@@ -296,119 +305,6 @@ impl<R: Real> Islands<R> {
     ) -> QuietTime {
         self.fresh = false;
         self.quiet.accumulate::<L>(bodies, runs, pull, dt_secs)
-    }
-
-    /// Is there a link whose demand time may meet?
-    pub fn waits(&self) -> bool {
-        self.waits
-    }
-
-    /// What links ask of their ends from now on.
-    pub fn take_demands(&mut self, demands: impl Iterator<Item = Demand>) {
-        self.demands.clear();
-        self.demands.extend(demands);
-    }
-
-    /// Lets the islands in `runs` fall asleep that may. `fields`: does any act? `gravity`, m/s².
-    pub fn settle(
-        &mut self,
-        bodies: &mut Bodies<R>,
-        manifolds: &Manifolds<R>,
-        runs: &[Range<usize>],
-        fields: bool,
-        gravity: f64,
-    ) {
-        self.join(bodies, manifolds, runs);
-        self.ask(bodies, gravity);
-        for slot in runs.iter().cloned().flatten() {
-            if !self.awake[slot] || bodies.kind(slot) != BodyKind::Dynamic {
-                continue;
-            }
-            let root = self.sets.of(slot as u32) as usize;
-            let bits = self.bits[root];
-            let rests = bits & SUPPORTED != 0 || !(fields || bits & DRIFTING != 0);
-            if bits & RESTLESS == 0 && rests {
-                self.put_to_sleep(bodies, slot, root);
-            }
-        }
-    }
-
-    /// Finds the islands of awake bodies and what they are.
-    fn join(&mut self, bodies: &Bodies<R>, manifolds: &Manifolds<R>, runs: &[Range<usize>]) {
-        self.sets.part(bodies.len(), runs);
-        for slot in runs.iter().cloned().flatten() {
-            self.bits[slot] = 0;
-        }
-        let is_dynamic = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
-        let Self { links, awake, sets, bits, .. } = self;
-        let awake_links = links.iter().filter(|ends| ends.iter().any(|&end| awake[end as usize]));
-        let touching = manifolds.touching().iter().map(|&place| manifolds.slots(place as usize));
-        let edges = touching.chain(awake_links.copied());
-        for ends in edges.clone() {
-            if ends.into_iter().all(is_dynamic) {
-                sets.join(ends);
-            }
-        }
-        for [a, b] in edges {
-            for (own, other) in [(a, b), (b, a)] {
-                if is_dynamic(own) && !is_dynamic(other) {
-                    let root = sets.of(own) as usize;
-                    bits[root] |= if awake[other as usize] { RESTLESS } else { SUPPORTED };
-                }
-            }
-        }
-        for slot in runs.iter().cloned().flatten().filter(|&slot| is_dynamic(slot as u32)) {
-            let quiet = self.quiet.is_ripe(slot);
-            let root = sets.of(slot as u32) as usize;
-            bits[root] |= if quiet { 0 } else { RESTLESS };
-            bits[root] |= if is_at_rest(bodies, slot) { 0 } else { DRIFTING };
-        }
-    }
-
-    /// What links demand: islands with one that is not met are restless. All that hangs together swings no slower than a
-    /// pendulum as long as its links, in 2π·√(length/g).
-    fn ask(&mut self, bodies: &Bodies<R>, gravity: f64) {
-        let demands = std::mem::take(&mut self.demands);
-        self.waits = false;
-        let is_dynamic = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
-        let ends = |demand: &Demand| demand.ends.into_iter().filter(|&end| is_dynamic(end));
-        for end in demands.iter().flat_map(ends) {
-            self.reach[self.sets.of(end) as usize] = 0.0;
-        }
-        for demand in &demands {
-            if let Some(end) = ends(demand).next() {
-                self.reach[self.sets.of(end) as usize] += demand.reach;
-            }
-        }
-        for demand in &demands {
-            for end in ends(demand) {
-                let root = self.sets.of(end) as usize;
-                let swings = if gravity > 0.0 { (self.reach[root] / gravity).sqrt() } else { 0.0 };
-                let needed = demand.quiet_secs.max(std::f64::consts::TAU * swings);
-                if self.quiet.secs(end as usize) < needed {
-                    self.bits[root] |= RESTLESS;
-                    self.waits |= needed.is_finite();
-                }
-            }
-        }
-        self.demands = demands;
-    }
-
-    fn put_to_sleep(&mut self, bodies: &mut Bodies<R>, slot: usize, root: usize) {
-        // Slots ascend and a root is the lowest: it always begins its ring.
-        if slot == root {
-            self.next[slot] = slot as u32;
-            self.rings += 1;
-        } else {
-            self.next[slot] = std::mem::replace(&mut self.next[root], slot as u32);
-        }
-        (self.asleep[slot], self.awake[slot]) = (true, false);
-        self.quiet.end(slot);
-        for column in [&mut bodies.vx, &mut bodies.vy, &mut bodies.w] {
-            column[slot] = R::ZERO;
-        }
-        self.sleeping += 1;
-        self.changes += 1;
     }
 }
 

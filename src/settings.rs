@@ -1,8 +1,14 @@
 //! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips, sleep.
 
+mod error;
+mod skips;
+
 use serde::{Deserialize, Serialize};
 
 use crate::lanes::Real;
+
+pub use error::SettingsError;
+pub use skips::Skips;
 
 /// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
 ///
@@ -150,139 +156,6 @@ named_enum! {
     PairList = "pair_list",
     /// A pair whose bodies have hardly moved keeps its manifold; see [`crate::motion::CONTACT_REUSE_DISTANCE`] for the bound.
     ManifoldReuse = "manifold_reuse",
-}
-
-/// A set of [`Skip`]s.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub struct Skips(u32);
-
-impl Skips {
-    /// All of them: the default.
-    pub const ALL: Self = Self((1 << Skip::ALL.len()) - 1);
-    /// Those that change no bit of a result.
-    pub const EXACT: Self = Self::ALL.without(Skip::ManifoldReuse);
-    /// None: every stage does all its work.
-    pub const NONE: Self = Self(0);
-
-    /// Is `skip` on?
-    pub const fn has(self, skip: Skip) -> bool {
-        self.0 & (1 << skip as u32) != 0
-    }
-    /// The set with `skip` on.
-    #[must_use]
-    pub const fn with(self, skip: Skip) -> Self {
-        Self(self.0 | 1 << skip as u32)
-    }
-    /// The set with `skip` off.
-    #[must_use]
-    pub const fn without(self, skip: Skip) -> Self {
-        Self(self.0 & !(1 << skip as u32))
-    }
-}
-
-impl std::str::FromStr for Skips {
-    type Err = UnknownName;
-    /// `all`, `none`, `exact` (all that change no bit), or names separated by commas.
-    fn from_str(given: &str) -> Result<Self, UnknownName> {
-        match given {
-            "all" => Ok(Self::ALL),
-            "none" => Ok(Self::NONE),
-            "exact" => Ok(Self::EXACT),
-            list => list.split(',').try_fold(Self::NONE, |set, name| Ok(set.with(name.trim().parse()?))),
-        }
-    }
-}
-
-impl TryFrom<String> for Skips {
-    type Error = UnknownName;
-    fn try_from(given: String) -> Result<Self, UnknownName> {
-        given.parse()
-    }
-}
-
-impl From<Skips> for String {
-    fn from(skips: Skips) -> Self {
-        skips.to_string()
-    }
-}
-
-impl std::fmt::Display for Skips {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match *self {
-            Self::ALL => f.write_str("all"),
-            Self::NONE => f.write_str("none"),
-            Self::EXACT => f.write_str("exact"),
-            some => {
-                let names: Vec<_> = Skip::ALL.iter().filter(|s| some.has(**s)).map(|s| s.name()).collect();
-                f.write_str(&names.join(","))
-            }
-        }
-    }
-}
-
-/// A setting that cannot be run with.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// The step must be positive and finite once rounded to the precision.
-    #[error("dt must be positive and finite in {precision}, got {given:?}")]
-    Dt {
-        /// The precision asked for.
-        precision: Precision,
-        /// What was given, seconds.
-        given: f64,
-    },
-    /// The inverse of a substep must leave room for what it is multiplied by.
-    #[error("dt must be at least {least:e} s in {precision}, got {given:?}")]
-    ShortDt {
-        /// The precision asked for.
-        precision: Precision,
-        /// What was given, seconds.
-        given: f64,
-        /// The shortest step, seconds.
-        least: f64,
-    },
-    /// At least one substep.
-    #[error("substeps must be 1 to 1000, got {0}")]
-    Substeps(u32),
-    /// A bound on the sag is a positive length.
-    #[error("max-sag must be positive and finite, got {0:?} m")]
-    MaxSag(f64),
-    /// Only one solver knows what its contacts sag by.
-    #[error("max-sag needs the solver soft, got {0}")]
-    MaxSagSolver(Solver),
-    /// A bound on the sag is kept by numbers of substeps that differ.
-    #[error("fixed-substeps and max-sag exclude each other")]
-    FixedSag,
-    /// A share of the substep rate.
-    #[error("stiffness must be over 0 and at most 0.5, got {0:?}")]
-    Stiffness(f64),
-    /// Positions are not coarser than the scalar.
-    #[error("positions must be f64 with f64, got f32")]
-    Positions,
-    /// A bound of the watchdog is a positive number.
-    #[error("{name} must be positive and finite, got {given:?} {unit}")]
-    Bound {
-        /// `max-speed` or `max-gain`.
-        name: &'static str,
-        /// What was given.
-        given: f64,
-        /// Its unit.
-        unit: &'static str,
-    },
-    /// Only one solver's contacts are springs.
-    #[error("stiffness needs the solver soft, got {0}")]
-    StiffnessSolver(Solver),
-    /// Lane widths are 1, 4, 8 and 16 for f32, 1 and 4 for f64.
-    #[error("lanes must be {choices} with {precision}, got {given}")]
-    Lanes {
-        /// The precision asked for.
-        precision: Precision,
-        /// The widths it has.
-        choices: &'static str,
-        /// What was given.
-        given: usize,
-    },
 }
 
 impl Precision {

@@ -2,7 +2,6 @@
 //! and the tests drive. The width is chosen here, once, and nowhere else.
 
 use crate::body::{Bodies, BodyError, BodyId, Form};
-use crate::broad::BroadPhase;
 use crate::contact::Contact;
 use crate::event::Action;
 use crate::force::Forces;
@@ -132,7 +131,7 @@ pub trait Simulation: Send {
     fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError>;
     /// The candidate pairs of the last step.
     fn pairs(&self) -> Vec<[u32; 2]>;
-    /// The method `auto` stands for here.
+    /// The method that found the last list of candidate pairs; before there is one, what `auto` stands for.
     fn broad_in_use(&self) -> Broad;
     /// A copy that goes its own way.
     fn duplicate(&self) -> Box<dyn Simulation>;
@@ -313,7 +312,7 @@ where
         joints.ids().filter_map(|id| joints.anchors_world(id, self.bodies()).ok()).collect()
     }
     fn broad_in_use(&self) -> Broad {
-        BroadPhase::<L::Elem>::resolve(self.settings().broad, self.bodies().live())
+        World::broad_in_use(self)
     }
     fn duplicate(&self) -> Box<dyn Simulation> {
         Box::new(self.clone())

@@ -28,6 +28,18 @@ impl Placed {
 }
 
 impl<R: Real> Bodies<R> {
+    /// The outline of the body in a slot about its centroid, world axes, in `f64`; empty for circles.
+    pub fn outline(&self, slot: usize) -> Vec<[f64; 2]> {
+        let (c, s) = (self.c[slot].to_f64(), self.s[slot].to_f64());
+        self.outline_body(slot).into_iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
+    }
+
+    /// [`Bodies::outline`] in the body frame.
+    pub fn outline_body(&self, slot: usize) -> Vec<[f64; 2]> {
+        let (corners, count) = self.corners_body(slot);
+        corners[..count].iter().map(glam::DVec2::to_array).collect()
+    }
+
     /// Corners of a box or polygon in the body frame, metres, counter-clockwise; how many: 0 for a circle.
     pub(crate) fn corners_body(&self, slot: usize) -> ([DVec2; MAX_VERTICES], usize) {
         let mut corners = [DVec2::ZERO; MAX_VERTICES];

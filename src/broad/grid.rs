@@ -17,7 +17,7 @@ const MAX_LEVELS: usize = 40;
 /// Cells are crowded where circles share theirs with so many, on the mean, themselves counted in: outliers have stretched them.
 const CROWDED: usize = 16;
 /// Lists for which crowded cells are not tried again.
-const PAUSE: u32 = 64;
+const CROWDED_LISTS: u32 = 64;
 
 /// The most cells a level of this many circles is laid out in.
 fn most_cells(circles: usize) -> f64 {
@@ -95,7 +95,7 @@ impl<R: Real> Grid<R> {
         }
         let sharing: usize = self.levels.iter().map(|level| level.sharing).sum();
         if gives_way && sharing > CROWDED * circles.len() {
-            self.pause = PAUSE;
+            self.pause = CROWDED_LISTS;
             return false;
         }
         for (k, level) in self.levels.iter().enumerate() {

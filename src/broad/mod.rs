@@ -134,6 +134,8 @@ pub struct BroadPhase<R: Real> {
     /// Per slot, while statics are being frozen.
     awake: Vec<bool>,
     kept: BroadCounts,
+    /// What found the last list.
+    in_use: Option<Broad>,
     /// Lists found so far.
     lists: u64,
     revision: Option<u64>,
@@ -156,6 +158,7 @@ impl<R: Real> Default for BroadPhase<R> {
             some_sleep: false,
             awake: Vec::new(),
             kept: BroadCounts::default(),
+            in_use: None,
             lists: 0,
             revision: None,
             apart: Vec::new(),
@@ -182,6 +185,11 @@ impl<R: Real> BroadPhase<R> {
             Broad::Auto => Broad::Grid,
             chosen => chosen,
         }
+    }
+
+    /// The method that found the last list; before there is one, what `method` stands for with so many bodies.
+    pub fn in_use(&self, method: Broad, bodies: usize) -> Broad {
+        self.in_use.unwrap_or_else(|| Self::resolve(method, bodies))
     }
 
     /// Sorts bodies into long and plain ones if they have changed; returns the median bounding radius of those
@@ -276,15 +284,22 @@ impl<R: Real> BroadPhase<R> {
     /// `gives_way`: the grid does, where its cells are crowded.
     fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, gives_way: bool) {
         self.pairs.clear();
+        self.in_use = Some(method);
         if method == Broad::Off {
             return all_pairs(bodies, &mut self.pairs);
         }
         self.pack_plain(bodies);
-        match method {
-            Broad::Brute => brute::find::<L>(&self.circles, &mut self.pairs),
-            Broad::Grid if self.grid.find::<L>(&self.circles, &mut self.pairs, gives_way) => (),
-            _ => self.sweep.find::<L>(&self.circles, &mut self.pairs),
-        }
+        self.in_use = Some(match method {
+            Broad::Brute => {
+                brute::find::<L>(&self.circles, &mut self.pairs);
+                Broad::Brute
+            }
+            Broad::Grid if self.grid.find::<L>(&self.circles, &mut self.pairs, gives_way) => Broad::Grid,
+            _ => {
+                self.sweep.find::<L>(&self.circles, &mut self.pairs);
+                Broad::Sweep
+            }
+        });
         if self.frozen.active {
             return self.find_beside_frozen::<L>(bodies);
         }

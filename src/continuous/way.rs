@@ -10,7 +10,7 @@ use crate::lanes::Real;
 use crate::vec2::Rot;
 
 /// How often a body may meet others within a step; then it stays where it is.
-const MEETINGS: u32 = 8;
+pub(super) const MEETINGS: u32 = 8;
 
 /// A body on its way through a step. Without its outline, which only those need that come near each other.
 #[derive(Clone, Debug)]
@@ -56,6 +56,11 @@ impl Way {
     pub(super) fn from(&self, since: f64) -> Course {
         let over = if self.since < 1.0 { (since - self.since) / (1.0 - self.since) } else { 0.0 };
         self.course.after(over)
+    }
+
+    /// [`Way::from`] an instant; where the way was seen last it is lent as it is, as most are: copies took half of a pair's time.
+    pub(super) fn lent<'a>(&'a self, since: f64, later: &'a mut Option<Course>) -> &'a Course {
+        if self.since == since { &self.course } else { later.insert(self.from(since)) }
     }
 
     /// The body stays where it is for the rest of the step.

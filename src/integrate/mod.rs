@@ -23,6 +23,7 @@
 //! `moved` sums one angle per step, turned exactly by [`Rot::turned`].
 
 mod explicit_euler;
+mod finish;
 mod position_verlet;
 mod rk4;
 mod scheme;
@@ -37,12 +38,13 @@ use crate::each::Each as _;
 use crate::force::{Matter, acceleration};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
 use crate::motion::{
-    Block, CONTACT_REUSE_DISTANCE, Chosen, Fast, FastBodies, Motion, Plan, Skipped, Warm,
-    angular_acceleration, block, block_starts, blocks_in, lanes_in, load_four, matter, store_four, vectors,
+    Block, Chosen, Fast, FastBodies, Motion, Plan, Skipped, Warm, angular_acceleration, block, block_starts,
+    blocks_in, lanes_in, load_four, matter, store_four, vectors,
 };
 use crate::settings::{Integrator, Skip};
 use crate::vec2::{Rot, Vec2};
 
+pub(crate) use finish::finish;
 pub(crate) use scheme::{Advance, Scheme, Step};
 pub(crate) use stiff::Stiff;
 
@@ -359,69 +361,6 @@ pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>)
         store_four::<L>(&mut motion.moved, at, moved);
     }
     !(!doubtful.equals(L::zero())).any()
-}
-
-/// Ends a step: velocities go back to their columns, displacements are added to the poses, and bodies that
-/// have gone further than [`CONTACT_REUSE_DISTANCE`] of their radius since they last did are noted as having moved, fast ones in `fast`.
-/// `speeds`, m/s, that no two bodies' points reach together while no body's reaches half of them: those of
-/// [`Outlook`](crate::motion::Outlook).
-pub(crate) fn finish<L: Lanes>(
-    bodies: &mut Bodies<L::Elem>,
-    motion: &mut Motion<L::Elem>,
-    mut fast: FastBodies<'_, L::Elem>,
-    speeds: [f64; 2],
-) {
-    let (bound, [half_speculative, half_bouncing]) =
-        (L::lit(CONTACT_REUSE_DISTANCE), speeds.each(|speed| L::lit(0.5 * speed)));
-    let (mut any_has_moved, mut any_speculative, mut any_bouncing) = (0, 0, 0);
-    let is_fine = bodies.fine.is_some();
-    let runs = std::mem::take(&mut motion.runs);
-    for (start, end) in blocks_in::<L>(&runs) {
-        let mut angle = [L::zero(); BLOCK];
-        for i in 0..BLOCK {
-            let at = start + i;
-            if at >= end {
-                break;
-            }
-            let [vx, vy, w, _] = load_four::<L>(&motion.velocity, at);
-            let last = load_four::<L>(&motion.moved, at);
-            let moved: [L; 3] = crate::each::indexed(|k| motion.total[k].lanes::<L>()[at] + last[k]);
-            let radius = bodies.radius.lanes::<L>()[at];
-            let path = path_of(moved, radius);
-            if let Some(fast) = &mut fast {
-                note_fast(bodies, at, path, moved, fast);
-            }
-            for (column, value) in [(&mut bodies.vx, vx), (&mut bodies.vy, vy), (&mut bodies.w, w)] {
-                column.lanes_mut::<L>()[at] = value;
-            }
-            if is_fine {
-                bodies.move_lanes(at, [moved[0], moved[1]]);
-            } else {
-                for (column, step) in [(&mut bodies.x, moved[0]), (&mut bodies.y, moved[1])] {
-                    column.lanes_mut::<L>()[at] = column.lanes::<L>()[at] + step;
-                }
-            }
-            angle[i] = moved[2];
-            let speed = (vx.abs() + vy.abs()) + radius * w.abs();
-            any_speculative |= half_speculative.le(speed).bits();
-            any_bouncing |= half_bouncing.le(speed).bits();
-            let drift = motion.drift.lanes::<L>()[at] + path;
-            let stirs = (bound * radius).lt(drift);
-            motion.drift.lanes_mut::<L>()[at] = L::select(stirs, L::zero(), drift);
-            let bits = stirs.bits();
-            any_has_moved |= bits;
-            for (lane, has_moved) in
-                motion.has_moved[at * L::WIDTH..(at + 1) * L::WIDTH].iter_mut().enumerate()
-            {
-                *has_moved = bits >> lane & 1 == 1;
-            }
-        }
-        turn_block(bodies, start..end, &angle);
-    }
-    motion.runs = runs;
-    motion.outlook.any_has_moved = any_has_moved != 0;
-    (motion.outlook.needs_speculative_margin, motion.outlook.may_bounce) =
-        (any_speculative != 0, any_bouncing != 0);
 }
 
 #[inline(always)]

@@ -15,22 +15,22 @@ mod circle_box;
 mod circle_circle;
 mod circle_polygon;
 mod clip;
+mod look;
 mod margin;
 mod passing;
 mod polygon_polygon;
 mod seamed;
 mod todo;
 
-use crate::body::{Bodies, Form, fine_difference};
-use crate::each::Each as _;
-
+use crate::body::{Bodies, Form};
 use crate::column::{Column, PAD};
-use crate::contact::{Code, Manifolds};
-use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real};
+use crate::contact::Manifolds;
+use crate::each::Each as _;
+use crate::lanes::{IN_ORDER, Lanes, ROW, Real};
 use crate::seams::Seams;
 use crate::vec2::{Rot, Vec2};
 
-use margin::{Ahead, Margin};
+use margin::Margin;
 use polygon_polygon::Hull;
 use todo::Todo;
 
@@ -128,8 +128,6 @@ pub struct Narrow<R: Real> {
     /// Per slot, whether it is among them.
     is_wanted: Vec<bool>,
     few: bool,
-    /// Rows of one batch, lane by lane.
-    scratch: [[R; ROW]; 16],
     /// What of static outlines is covered, and the places of pairs to look at of which one body is such a one.
     seams: Seams,
     seamed: Vec<u32>,
@@ -148,7 +146,6 @@ impl<R: Real> Default for Narrow<R> {
             wanted: Vec::new(),
             is_wanted: Vec::new(),
             few: false,
-            scratch: [[R::ZERO; ROW]; 16],
             seams: Seams::default(),
             seamed: Vec::new(),
             manifolds: Manifolds::default(),
@@ -163,7 +160,8 @@ impl<R: Real> Narrow<R> {
     pub fn run<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, pairs: &[[u32; 2]], margin: R) {
         self.rebuild(bodies, pairs);
         self.choose(bodies.len(), MovedBodies::All);
-        self.collide::<L>(bodies, margin, R::ZERO, Stride { secs: R::ZERO, fallen: [R::ZERO; 2] });
+        let stride = Stride { secs: R::ZERO, fallen: [R::ZERO; 2] };
+        self.collide::<L>(bodies, margin, R::ZERO, stride);
         self.manifolds.refresh();
     }
 
@@ -327,67 +325,6 @@ impl<R: Real> Narrow<R> {
             let inner = L::select(core.lt(L::splat(R::FAR)), core + core, L::zero());
             L::scatter_fours([vx, vy, radius, inner], rows, &IN_ORDER);
         }
-    }
-
-    #[inline(always)]
-    fn run_bucket<L: Lanes<Elem = R>>(
-        &mut self,
-        bodies: &Bodies<R>,
-        todo: &Todo,
-        margin: Margin<L>,
-        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
-    ) {
-        let looks_ahead = L::zero().lt(margin.ahead).any();
-        let mut at = 0;
-        while at < todo.len {
-            let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
-            let places = &todo.place[at..at + L::WIDTH];
-            let mut a = Pose::gather(self.poses.rows(), slots[0]);
-            let mut b = Pose::gather(self.poses.rows(), slots[1]);
-            if self.is_fine {
-                (a.x, b.x) = (Vec2::zero(), self.to_b_finely([a.x, b.x], slots));
-            }
-            let ahead = looks_ahead.then(|| Ahead::of(self.speeds.fours(), slots));
-            let within = ahead.as_ref().map_or(margin.still, |ahead| margin.of(ahead));
-            let mut found = collide(&a, &b, slots, within);
-            if let Some(ahead) = ahead {
-                let doubtful = ahead.may_pass(&found, b.x - a.x, margin.stride);
-                if doubtful != 0 {
-                    let separations = found.separations[0];
-                    found.hits =
-                        passing::staying(found.hits, separations, bodies, slots, doubtful, margin.stride);
-                }
-            }
-            if found.hits[0].any() {
-                self.keep(&a, &b, &found, places);
-            } else {
-                self.manifolds.write_apart(places);
-            }
-            at += L::WIDTH;
-        }
-    }
-
-    /// From A to B, where positions are finer than their columns. Out of line: few worlds come here, and kernels keep
-    /// their registers (inlined it cost all of them 5 %).
-    #[cold]
-    #[inline(never)]
-    fn to_b_finely<L: Lanes<Elem = R>>(&self, centroids: [Vec2<L>; 2], slots: [&[u32]; 2]) -> Vec2<L> {
-        fine_difference(centroids, slots.each(|slots| L::gather_fours(self.fine.fours(), slots)))
-    }
-
-    #[inline(always)]
-    fn keep<L: Lanes<Elem = R>>(&mut self, a: &Pose<L>, b: &Pose<L>, found: &Found<L>, places: &[u32]) {
-        let (one, zero) = (L::one(), L::zero());
-        let two_points = L::select(found.hits[1], L::lit(2.0), one);
-        let features = found.features.unwrap_or([zero, zero]);
-        let second = L::select(found.hits[1], features[1], zero);
-        let code = L::select(found.hits[0], Code::lanes([features[0], second], two_points), zero);
-        let [arm0, arm1] = found.arms;
-        let to_b = b.x - a.x;
-        let geometry = [found.normal.x, found.normal.y, arm0.x, arm0.y, arm1.x, arm1.y, to_b.x, to_b.y];
-        let (friction, restitution) = (a.friction.min(b.friction), a.restitution.min(b.restitution));
-        let gap = [found.separations[0], found.separations[1], friction, restitution];
-        self.manifolds.write(places, code, geometry, gap, &mut self.scratch);
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::Narrow;
 use crate::body::Bodies;
-use crate::contact::Code;
+use crate::contact::{Code, Places};
 use crate::lanes::{ROW, Real};
 use crate::seams::{Met, Seams};
 
@@ -56,32 +56,42 @@ impl<R: Real> Narrow<R> {
             let closing = (speed(other) - speed(own)).length() * ahead_secs.to_f64();
             let most = 0.5 * bodies.radius[other].to_f64().min(bodies.radius[own].to_f64());
             let met = outline.meet(&bodies.placed(other), margin.to_f64() + closing.min(most));
+            let mut places = self.manifolds.places();
             match met {
-                Some(met) => self.keep_met(bodies, place, slots.map(|slot| slot as usize), end, &met),
-                None => self.manifolds.write_apart(&[place]),
+                Some(met) => {
+                    keep_met(bodies, (&mut places, place), slots.map(|slot| slot as usize), end, &met);
+                }
+                None => places.write_apart(&[place]),
             }
+            let found = places.finish();
+            self.manifolds.keep(found);
         }
     }
+}
 
-    /// Writes a contact down; `end`: which of the two bodies is the outline.
-    fn keep_met(&mut self, bodies: &Bodies<R>, place: u32, [a, b]: [usize; 2], end: usize, met: &Met) {
-        let [from_a, from_b] = [a, b].map(|slot| DVec2::from(bodies.place(slot)));
-        let normal = if end == 0 { met.normal } else { -met.normal };
-        let points = met.points();
-        let last = points[points.len() - 1];
-        let arms = [points[0].at - from_a, if points.len() == 2 { last.at - from_a } else { DVec2::ZERO }];
-        let to_b = from_b - from_a;
-        let real = R::from_f64;
-        let geometry: [R; ROW] =
-            [normal.x, normal.y, arms[0].x, arms[0].y, arms[1].x, arms[1].y, to_b.x, to_b.y].map(real);
-        let second = if points.len() == 2 { last.separation } else { 0.0 };
-        let least = |column: &crate::column::Column<R>| {
-            if column[a] < column[b] { column[a] } else { column[b] }
-        };
-        let gap =
-            [real(points[0].separation), real(second), least(&bodies.friction), least(&bodies.restitution)];
-        let feature = |k: usize| if k < points.len() { f64::from(points[k].feature) } else { 0.0 };
-        let code = Code::lanes([real(feature(0)), real(feature(1))], real(points.len() as f64));
-        self.manifolds.write::<R>(&[place], code, geometry, gap, &mut self.scratch);
-    }
+/// Writes a contact down; `end`: which of the two bodies is the outline.
+fn keep_met<R: Real>(
+    bodies: &Bodies<R>,
+    (places, place): (&mut Places<'_, R>, u32),
+    [a, b]: [usize; 2],
+    end: usize,
+    met: &Met,
+) {
+    let [from_a, from_b] = [a, b].map(|slot| DVec2::from(bodies.place(slot)));
+    let normal = if end == 0 { met.normal } else { -met.normal };
+    let points = met.points();
+    let last = points[points.len() - 1];
+    let arms = [points[0].at - from_a, if points.len() == 2 { last.at - from_a } else { DVec2::ZERO }];
+    let to_b = from_b - from_a;
+    let real = R::from_f64;
+    let geometry: [R; ROW] =
+        [normal.x, normal.y, arms[0].x, arms[0].y, arms[1].x, arms[1].y, to_b.x, to_b.y].map(real);
+    let second = if points.len() == 2 { last.separation } else { 0.0 };
+    let least = |column: &crate::column::Column<R>| {
+        if column[a] < column[b] { column[a] } else { column[b] }
+    };
+    let gap = [real(points[0].separation), real(second), least(&bodies.friction), least(&bodies.restitution)];
+    let feature = |k: usize| if k < points.len() { f64::from(points[k].feature) } else { 0.0 };
+    let code = Code::lanes([real(feature(0)), real(feature(1))], real(points.len() as f64));
+    places.write::<R>(&[place], code, geometry, gap);
 }

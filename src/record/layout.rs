@@ -85,8 +85,10 @@ impl Topic {
 
 /// What is known of each step, by name: seconds, ns per stage, counts, J, kg·m/s, kg·m²/s, metres.
 ///
-/// Overlaps are what the contacts' gaps say; NaN where a step's contacts were not recorded.
-pub const STATISTICS: [&str; 21] = [
+/// Overlaps are what the contacts' gaps say; NaN where a step's contacts were not recorded. Joints and contacts that were solved
+/// directly, and bodies that were advanced beside their scheme, which could not follow their fields: NaN in recordings of
+/// format 1, which did not have them.
+pub const STATISTICS: [&str; 24] = [
     "time_secs",
     "broad_ns",
     "narrow_ns",
@@ -108,7 +110,15 @@ pub const STATISTICS: [&str; 21] = [
     "angular_momentum",
     "max_overlap",
     "mean_overlap",
+    "direct_joints",
+    "direct_contacts",
+    "stiff",
 ];
+
+/// How many of them a format has: the first.
+pub(super) fn statistics_in(format: u32) -> usize {
+    if format <= 1 { 21 } else { STATISTICS.len() }
+}
 
 /// One step's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,15 +143,16 @@ impl StepRow {
         out.extend(self.values.iter().flat_map(|value| value.to_le_bytes()));
     }
 
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, Damage> {
+    /// `known`: how many statistics there are, see [`statistics_in`].
+    pub(super) fn read(bytes: &[u8], known: usize) -> Result<Self, Damage> {
         let mut from = Bytes(bytes);
-        let row = Self::take(&mut from)?;
+        let row = Self::take(&mut from, known)?;
         from.end("a step's numbers").map(|()| row)
     }
 
-    pub(super) fn take(from: &mut Bytes<'_>) -> Result<Self, Damage> {
-        let (step, hash, mut values) = (from.u64()?, from.u64()?, [0.0; STATISTICS.len()]);
-        for value in &mut values {
+    pub(super) fn take(from: &mut Bytes<'_>, known: usize) -> Result<Self, Damage> {
+        let (step, hash, mut values) = (from.u64()?, from.u64()?, [f64::NAN; STATISTICS.len()]);
+        for value in &mut values[..known] {
             *value = from.f64()?;
         }
         Ok(Self { step, hash, values })

@@ -7,7 +7,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::container::{Damage, Message, Source, damage};
-use super::layout::{Bytes, Frame, RecordedContact, StepRow, Topic, read_contacts};
+use super::layout::{
+    Bytes, Frame, RecordedContact, STATISTICS, StepRow, Topic, read_contacts, statistics_in,
+};
 use super::{FORMAT, NO_FRAME, RecordError, RunInfo};
 use crate::scene::Scene;
 use crate::session::Event;
@@ -265,8 +267,20 @@ impl Index {
     }
 }
 
+/// How many statistics the rows of a file have whose first chunk this is.
+fn known_statistics(first: &[Message]) -> usize {
+    #[derive(Deserialize)]
+    struct Format {
+        format: u32,
+    }
+    // What cannot be read is refused by whoever asks what was run.
+    let format = json(first, Topic::Run).map_or(FORMAT, |Format { format }| format);
+    statistics_in(format)
+}
+
 /// The index at the end of a whole file.
 fn read_index(source: &mut Source) -> Result<Index, Damage> {
+    let known = known_statistics(&source.read(0)?);
     let last = source.chunks().checked_sub(1).ok_or_else(|| damage("it has no chunks"))?;
     let contents: Contents = json(&source.read(last)?, Topic::Contents)?;
     let mut index = Index { bodies: contents.bodies, ..Index::default() };
@@ -279,7 +293,7 @@ fn read_index(source: &mut Source) -> Result<Index, Damage> {
         for message in source.read(chunk as usize)?.iter().filter(|message| message.topic == Topic::Index) {
             let mut from = Bytes(&message.data);
             for _ in 0..from.u32()? {
-                let row = StepRow::take(&mut from)?;
+                let row = StepRow::take(&mut from, known)?;
                 index.add(row, from.u32()?);
             }
             from.end("the index")?;
@@ -294,12 +308,15 @@ fn read_index(source: &mut Source) -> Result<Index, Damage> {
 
 /// Goes through a file from the front, where its index cannot be read for the reason given.
 fn scan(source: &mut Source, why: &Damage) -> (Index, Option<Loss>) {
-    let mut index = Index::default();
+    let (mut index, mut known) = (Index::default(), STATISTICS.len());
     let (good_bytes, ended) = source.scan(|chunk, messages| {
+        if chunk == 0 {
+            known = known_statistics(&messages);
+        }
         let (mut rows, mut frames, mut bodies, mut events) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for message in messages {
             match message.topic {
-                Topic::Step => rows.push(StepRow::read(&message.data)?),
+                Topic::Step => rows.push(StepRow::read(&message.data, known)?),
                 Topic::Frame => frames.push((Frame::step_of(&message.data)?, chunk)),
                 Topic::Event => events.push(parse(&message.data)?),
                 Topic::Bodies => bodies.push((parse::<BodyTable>(&message.data)?.step, chunk)),

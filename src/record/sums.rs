@@ -74,6 +74,9 @@ impl Sums {
             sum.angular_momentum,
             most,
             mean,
+            counts.direct_joints as f64,
+            counts.direct_contacts as f64,
+            counts.stiff as f64,
         ];
         StepRow { step: snapshot.step, hash, values }
     }

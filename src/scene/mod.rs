@@ -13,6 +13,7 @@ pub mod mixes;
 pub mod named;
 pub mod similar;
 pub mod stacks;
+mod takes;
 
 use std::path::Path;
 
@@ -23,6 +24,7 @@ use crate::event::{SceneEvent, When};
 use crate::force::Forces;
 use crate::joint::JointSpec;
 pub use named::{SCENES, SceneInfo, by_name, by_name_in};
+pub use takes::Takes;
 
 use crate::settings::Settings;
 

@@ -39,6 +39,7 @@
 //! shrink it by their square. ζ = 5 rather than 1 or 2: residual motion of a chain with a 100-fold weight after ten
 //! seconds 0.1 to 0.6 mm/s, against 25 to 150.
 
+mod batches;
 mod direct;
 mod pin;
 mod rod;

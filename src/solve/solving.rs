@@ -1,6 +1,8 @@
 //! What a step asks of its solver, in order; what each of them does is in the files beside this one.
 
 mod end;
+mod groups;
+mod read;
 
 use super::bounce::{self, Bouncing};
 use super::direct::DirectContacts;
@@ -8,11 +10,10 @@ use super::joint::{JointStream, Sources};
 use super::lengths::StepLengths;
 use super::scheme::{Pairs, Substep, solver_of};
 use super::stream::{Follow, Stream, WarmStart};
-use super::substep_group::{Goal, SubstepGroups};
+use super::substep_group::SubstepGroups;
 use super::{SolverContext, avbd, carries_impulses, deep, pushes};
-use crate::body::{Bodies, BodyKind};
-use crate::contact::{ContactRow, Manifolds};
-use crate::force::Field;
+use crate::body::Bodies;
+use crate::contact::Manifolds;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::motion::{Motion, Warm};
@@ -38,8 +39,6 @@ pub struct Solving<L: Lanes> {
     /// Steps until impulses are summed anew though nothing has changed: what the sums of the warm start per body
     /// round off must not add up.
     until_summed: u32,
-    /// Nothing touched in the last step, and lists of contacts are those of the one before.
-    flew: bool,
 }
 
 /// Steps for which a warm start is carried from one to the next.
@@ -60,98 +59,11 @@ impl<L: Lanes> Default for Solving<L> {
             deep: deep::Apart::default(),
             direct: DirectContacts::default(),
             until_summed: 0,
-            flew: false,
         }
     }
 }
 
 impl<L: Lanes> Solving<L> {
-    /// As a step begins: reads what contacts carry, and which stand on each other, if it is time to; says whether it was.
-    pub fn look(
-        &mut self,
-        goal: &Goal,
-        bodies: (&Bodies<L::Elem>, &[Field<L::Elem>]),
-        joints: &Joints<L::Elem>,
-    ) -> bool {
-        let looked = self.substep_groups.looks(goal);
-        if looked {
-            // What was in the lists before a flight no longer touches.
-            let mut loads = goal.max_sag.map(|_| self.substep_groups.reading());
-            if let Some(loads) = loads.as_mut().filter(|_| !self.flew) {
-                self.stream.visit(loads);
-            }
-            let mut touching = self.substep_groups.touching(goal);
-            if !self.flew {
-                self.stream.visit(&mut touching);
-            }
-            self.substep_groups.weigh(goal, bodies, joints.ends(), &self.direct);
-        }
-        looked
-    }
-
-    /// Has some island others than `substeps`?
-    pub fn is_paced(&self, substeps: u32) -> bool {
-        self.substep_groups.span().is_some_and(|span| span != [substeps; 2])
-    }
-
-    /// A step goes by in which nothing touches; `looked`: [`Solving::look`] did.
-    pub fn fly(&mut self, looked: bool) {
-        self.flew = true;
-        self.substep_groups.count_step(looked);
-    }
-
-    /// Gives islands their substeps; says whether any has others than before. `looked`: [`Solving::look`] did.
-    pub fn decide_substep_groups(
-        &mut self,
-        (goal, looked): (Goal, bool),
-        bodies: &Bodies<L::Elem>,
-        manifolds: &mut Manifolds<L::Elem>,
-        joints: &Joints<L::Elem>,
-        motion: &mut Motion<L::Elem>,
-    ) -> bool {
-        self.flew = false;
-        self.substep_groups.note_swing(&goal, self.joints.swing());
-        let wanted = self.substep_groups.wants(&goal, looked);
-        let changed = wanted
-            && self.substep_groups.decide(&goal, bodies, manifolds, joints.ends(), &motion.runs, looked);
-        self.substep_groups.count_step(looked);
-        if changed {
-            self.catch_up(motion);
-            let groups = &self.substep_groups;
-            let moves = |slot: &u32| bodies.kind(*slot as usize) == BodyKind::Dynamic;
-            let scale = |slots: [u32; 2]| groups.scale(slots.into_iter().find(moves)? as usize);
-            self.stream.regroup(manifolds, self.in_rows, groups, scale);
-            motion.group.of_slot.clone_from(self.substep_groups.index());
-        }
-        changed
-    }
-
-    /// How often substeps are counted out in a step: once for each number of them.
-    pub fn substep_groups(&self) -> &SubstepGroups<L::Elem> {
-        &self.substep_groups
-    }
-
-    /// Where there are several substep groups: passes go over one, until [`Solving::leave_group`].
-    pub fn enter_group(&mut self, substep_group: usize, motion: &mut Motion<L::Elem>) {
-        if self.substep_groups.count() > 1 {
-            self.substep_group = Some(substep_group);
-            self.stream.choose(self.substep_group);
-            motion.group.current = Some(L::Elem::from_f64(substep_group as f64));
-            std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
-        }
-    }
-
-    /// After [`Solving::enter_group`]: passes go over all contacts again. Gaps hear of the last displacements: those of
-    /// kinematic bodies will be of another substep when the next step begins.
-    pub fn leave_group(&mut self, substep_group: usize, motion: &mut Motion<L::Elem>) {
-        if self.substep_group.take().is_some() {
-            self.stream.visit(&mut Follow { moved: motion.moved.fours() });
-            self.stream.choose(None);
-            motion.group.current = None;
-            std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));
-        }
-    }
-
     /// Are joints solved in this substep group?
     fn with_joints(&self) -> bool {
         self.substep_group.is_none_or(|substep_group| {
@@ -398,57 +310,8 @@ impl<L: Lanes> Solving<L> {
         (substep, &mut self.avbd)
     }
 
-    /// The manifolds with today's gaps and impulses.
-    pub fn brought_up_to_date(
-        &self,
-        manifolds: &Manifolds<L::Elem>,
-        motion: &Motion<L::Elem>,
-    ) -> Manifolds<L::Elem> {
-        let mut manifolds = manifolds.clone();
-        self.write_rows(&mut manifolds, motion);
-        manifolds
-    }
-
-    /// Writes today's gaps and impulses to the rows of their pairs, for whoever reads those.
-    pub fn write_rows(&self, manifolds: &mut Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
-        if !self.in_rows {
-            self.stream.write_rows(manifolds, self.behind.then_some(motion.moved.fours()));
-        }
-    }
-
-    /// Tells of each touching pair with its gaps and impulses of the step's end, those of sleeping bodies last.
-    pub fn each_contact(
-        &self,
-        manifolds: &Manifolds<L::Elem>,
-        motion: &Motion<L::Elem>,
-        mut tell: impl FnMut(&ContactRow<L::Elem>),
-    ) {
-        let moved = self.behind.then_some(motion.moved.fours());
-        self.stream.each_contact(manifolds, moved, self.in_rows, &mut tell);
-        manifolds.resting_rows().for_each(|row| tell(&row));
-    }
-
     /// Hands impulses and angles back to the joints.
     pub fn end_joints(&mut self, joints: &mut Joints<L::Elem>) {
         self.joints.end(joints);
-    }
-
-    /// Contacts that were solved directly in the last step.
-    pub fn direct_contacts(&self) -> usize {
-        self.direct.len()
-    }
-
-    /// Joints that are solved directly.
-    pub fn direct_joints(&self) -> usize {
-        self.joints.direct()
-    }
-
-    /// The joints' constraints.
-    pub fn joints(&self) -> &JointStream<L> {
-        &self.joints
-    }
-    /// The constraints.
-    pub fn stream(&self) -> &Stream<L> {
-        &self.stream
     }
 }

@@ -62,11 +62,7 @@ pub struct SubstepGroups<R: Real> {
     before: Vec<u32>,
     /// Which of `substeps` a slot has.
     index: Column<R>,
-    /// N/m_eff·dt per slot, of this look and the last, m/s.
-    load: [Vec<f64>; 2],
-    /// Substeps it takes per slot to keep stacks from buckling, and from sinking in.
-    slender_stack_needs: Vec<[f64; 2]>,
-    slender_stacks: SlenderStacks,
+    seen: Looked,
     /// Bodies have come since the last look: what they stand on has hardly sagged yet.
     fresh: bool,
     /// Islands, while they are looked for.
@@ -75,9 +71,21 @@ pub struct SubstepGroups<R: Real> {
     islands: Vec<Island>,
     /// Substeps of all islands with joints.
     joined: Option<u32>,
+    steps: u32,
+    /// Nothing touched in the last step, and lists of contacts are those of the one before.
+    pub(super) flew: bool,
+}
+
+/// What looks have found.
+#[derive(Clone, Debug, Default)]
+struct Looked {
+    /// N/m_eff·dt per slot, of this look and the last, m/s.
+    load: [Vec<f64>; 2],
+    /// Substeps it takes per slot to keep stacks from buckling, and from sinking in.
+    slender_stack_needs: Vec<[f64; 2]>,
+    slender_stacks: SlenderStacks,
     /// Substeps with which what hangs on rods is followed.
     swing_needs: f64,
-    steps: u32,
 }
 
 impl<R: Real> Default for SubstepGroups<R> {
@@ -88,15 +96,13 @@ impl<R: Real> Default for SubstepGroups<R> {
             of_slot: Vec::new(),
             before: Vec::new(),
             index: Column::new(R::ZERO),
-            load: Default::default(),
-            slender_stack_needs: Vec::new(),
-            slender_stacks: SlenderStacks::default(),
+            seen: Looked::default(),
             fresh: true,
             sets: Sets::default(),
             islands: Vec::new(),
             joined: None,
-            swing_needs: 0.0,
             steps: 0,
+            flew: false,
         }
     }
 }
@@ -156,14 +162,14 @@ impl<R: Real> SubstepGroups<R> {
 
     /// Notes ω, rad/s, of what swings fastest on rods.
     pub(super) fn note_swing(&mut self, goal: &Goal, swing: f64) {
-        self.swing_needs = swing * goal.dt_secs / FOLLOWED;
+        self.seen.swing_needs = swing * goal.dt_secs / FOLLOWED;
     }
 
     /// Are islands to be told apart in this step? `looked`: it began with a look.
     pub fn wants(&self, goal: &Goal, looked: bool) -> bool {
         let asked =
-            || self.slender_stack_needs.as_flattened().iter().any(|&needs| needs > f64::from(goal.base));
-        let swings = self.swing_needs > f64::from(goal.base);
+            || self.seen.slender_stack_needs.as_flattened().iter().any(|&needs| needs > f64::from(goal.base));
+        let swings = self.seen.swing_needs > f64::from(goal.base);
         self.is_paced() || goal.max_sag.is_some() || (looked && asked()) || swings
     }
 
@@ -175,15 +181,15 @@ impl<R: Real> SubstepGroups<R> {
 
     /// A visitor that reads the loads.
     pub fn reading(&mut self) -> Loads<'_> {
-        self.load.swap(0, 1);
-        self.load[0].clear();
-        self.load[0].resize(self.of_slot.len(), 0.0);
-        Loads { load: &mut self.load[0], substeps: &self.of_slot }
+        self.seen.load.swap(0, 1);
+        self.seen.load[0].clear();
+        self.seen.load[0].resize(self.of_slot.len(), 0.0);
+        Loads { load: &mut self.seen.load[0], substeps: &self.of_slot }
     }
 
     /// A visitor that notes what touches.
     pub(super) fn touching<L: Lanes>(&mut self, goal: &Goal) -> Touching<'_, L> {
-        self.slender_stacks.reading(goal.touch)
+        self.seen.slender_stacks.reading(goal.touch)
     }
 
     /// What stacks need, by what has been noted. `joints`: the slots they join; `direct`: contacts that are solved at once.
@@ -194,7 +200,7 @@ impl<R: Real> SubstepGroups<R> {
         joints: impl Iterator<Item = [u32; 2]>,
         direct: &DirectContacts,
     ) {
-        self.slender_stacks.look(goal, bodies, (joints, direct), &mut self.slender_stack_needs);
+        self.seen.slender_stacks.look(goal, bodies, (joints, direct), &mut self.seen.slender_stack_needs);
     }
 
     /// Decides who has which substep group; says whether that has changed for anyone. `joints`: the slots they join; `looked`: the
@@ -211,8 +217,8 @@ impl<R: Real> SubstepGroups<R> {
         let resized = self.of_slot.len() != bodies.len();
         self.of_slot.resize(bodies.len(), goal.base);
         self.before.clone_from(&self.of_slot);
-        self.load.iter_mut().for_each(|load| load.resize(bodies.len(), 0.0));
-        self.slender_stack_needs.resize(bodies.len(), [0.0; 2]);
+        self.seen.load.iter_mut().for_each(|load| load.resize(bodies.len(), 0.0));
+        self.seen.slender_stack_needs.resize(bodies.len(), [0.0; 2]);
         self.join(bodies, manifolds, joints, runs);
         let joined = self.common_of_joined(goal, looked);
         self.joined = Some(joined);
@@ -248,7 +254,7 @@ impl<R: Real> SubstepGroups<R> {
         let of = |island: &Island| if looked { aimed(goal, island, self.fresh) } else { island.substeps };
         let joined = self.islands.iter().filter(|island| island.joined);
         let asked = joined.map(of).max().unwrap_or(goal.base).max(goal.base);
-        asked.max(goal::substeps_to_follow(self.swing_needs, self.joined.unwrap_or(goal.base), looked))
+        asked.max(goal::substeps_to_follow(self.seen.swing_needs, self.joined.unwrap_or(goal.base), looked))
     }
 
     /// Islands, what they carry and what they have had.
@@ -278,9 +284,9 @@ impl<R: Real> SubstepGroups<R> {
             let own = self.islands[slot];
             let at = self.sets.of(slot as u32) as usize;
             let island = &mut self.islands[at];
-            let [now, last] = self.load.each_ref().each(|load| load[slot]);
+            let [now, last] = self.seen.load.each_ref().each(|load| load[slot]);
             island.load = [island.load[0].max(now.min(last)), island.load[1].max(now.max(last))];
-            let [leaning, sinking] = self.slender_stack_needs[slot];
+            let [leaning, sinking] = self.seen.slender_stack_needs[slot];
             island.slender_stack = island.slender_stack.max(leaning);
             island.sinking = island.sinking.max(sinking);
             island.ringed |= sinking < 0.0;

@@ -8,7 +8,7 @@ use crate::joint::{JointError, JointId, JointKind, Joints, Motor};
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, StageTimes, state_hash};
 use crate::scene::{BodyKind, BodySpec, SceneError};
-use crate::settings::{Precision, Settings};
+use crate::settings::{Broad, Precision, Settings};
 use crate::solve::Solving;
 
 impl<L: Lanes> World<L> {
@@ -226,5 +226,9 @@ impl<L: Lanes> World<L> {
     /// The candidate pairs of the last step, of which one body at least is awake: slots a < b, in order.
     pub fn pairs(&self) -> &[[u32; 2]] {
         self.broad.pairs()
+    }
+    /// The method that found the last list of candidate pairs; before there is one, what `auto` stands for with so many bodies.
+    pub fn broad_in_use(&self) -> Broad {
+        self.broad.in_use(self.settings.broad, self.bodies.live())
     }
 }

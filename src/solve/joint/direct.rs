@@ -36,9 +36,9 @@ mod link;
 mod trees;
 
 use super::Stiffness;
+use super::batches::Batches;
 use super::pin::Pin;
 use super::rod::Rod;
-use super::stream::Batches;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::Side;

@@ -298,11 +298,18 @@ fn a_grid_that_gives_way_and_comes_back_loses_no_pair() {
     let worlds = [World::Clustered, World::Equal, World::Clustered];
     let worlds = worlds.map(|world| build::<f32>(world, SWEEP_LIMIT * 4 / 3, 11));
     let mut kept = BroadPhase::<f32>::default();
-    for bodies in &worlds {
+    assert_eq!(kept.in_use(Broad::Auto, SWEEP_LIMIT + 1), Broad::Grid);
+    for (bodies, method) in worlds.iter().zip([Broad::Sweep, Broad::Grid, Broad::Sweep]) {
         let want = find(8, bodies, Broad::Brute, 0.05);
         for list in 0..100 {
             kept.forget();
             f32::find(&mut kept, 8, bodies, Broad::Auto, 0.05);
+            // The first lists of a world come while the last one's cells are not tried again.
+            assert!(
+                list < 70 || kept.in_use(Broad::Auto, 0) == method,
+                "list {list}: {:?}",
+                kept.in_use(Broad::Auto, 0)
+            );
             assert!(kept.pairs() == want, "list {list}: {} pairs, not {}", kept.pairs().len(), want.len());
         }
     }

@@ -216,6 +216,33 @@ fn a_run_that_breaks_leaves_a_whole_recording() {
     assert_eq!(verified.code, Some(0), "{verified:#?}");
 }
 
+/// How many joints and contacts were solved directly, and how many bodies were advanced beside their scheme, stands in each step's
+/// row as in what a run prints.
+#[test]
+fn what_was_solved_otherwise_is_recorded() {
+    let folder = folder();
+    let spring = folder.path().join("spring.toml");
+    let text = "[forces]\nspring = { anchor = [0, 0], stiffness = 1e6 }\n[[body]]\nshape = { circle = 0.5 }\nposition = [1, 0]\n";
+    std::fs::write(&spring, text).unwrap();
+    for (scene, column) in [
+        (spring.to_str().unwrap(), "stiff"),
+        ("t09_chain", "direct_joints"),
+        ("heavy/1000", "direct_contacts"),
+    ] {
+        let path = folder.path().join("a.mcap");
+        let path = path.to_str().unwrap();
+        let run = lamina(&["run", scene, "--steps", "20", "--record", path, "--json"]);
+        let counted = json(&run)["counts"][column].as_f64();
+        let csv = lamina(&["export", path, "--csv", "--rows", "steps"]);
+        let mut lines = csv.out.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let at = lines.next().unwrap().iter().position(|name| *name == column).unwrap();
+        let last = lines.next_back().unwrap()[at].parse::<f64>().ok();
+        assert!(last.is_some_and(|count| count > 0.0), "{scene}: {column} {last:?}");
+        assert_eq!(last, counted, "{scene}: {column}");
+        std::fs::remove_file(path).unwrap();
+    }
+}
+
 /// The example in the crate documentation reads a recording, where Python has `mcap`.
 #[test]
 fn python_reads_a_recording_by_the_example() {

@@ -8,9 +8,9 @@ use crate::each::Each as _;
 use crate::force::{Field, acceleration_of};
 use crate::lanes::{Lanes, Real};
 use crate::solve::constraint::Side;
+use crate::solve::joint::batches::Batches;
 use crate::solve::joint::pin::Pin;
 use crate::solve::joint::rod::Rod;
-use crate::solve::joint::stream::Batches;
 use crate::vec2::Vec2;
 
 /// Added to the diagonals of nets, as a share of them: rows that depend on each other share what they carry. It softens
