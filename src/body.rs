@@ -362,6 +362,13 @@ impl<R: Real> Bodies<R> {
         }
     }
 
+    /// What lengths without a scale of their own are shares of, for a pair the lesser of both: of a dynamic body its bounding
+    /// radius, metres, of others beyond all.
+    #[inline]
+    pub fn length(&self, slot: usize) -> R {
+        if self.kind(slot) == BodyKind::Dynamic { self.radius[slot] } else { R::FAR }
+    }
+
     /// Does some body go round a pivot?
     pub fn is_driven(&self) -> bool {
         !self.drives.is_empty()

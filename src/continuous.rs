@@ -28,7 +28,7 @@
 //! skins (or overlaps) as the step begins is left to the solver, but for its core, a disc of half the inner radius,
 //! which never gets in: a plate that has come down on a corner would turn about it and through. A body whose contact
 //! has stopped it, or whose way ends before the wall, is left where it is, however near that is: stopped half a skin
-//! early, a billiard ball lost 20 µs. The skin is a thousandth of the scene's median radius, at most a fiftieth of the
+//! early, a billiard ball lost 20 µs. The skin is a thousandth of the body's radius, at most a fiftieth of the
 //! body's core, at least what a coordinate is rounded by.
 //!
 //! # What a pair costs
@@ -49,7 +49,7 @@ use glam::DVec2;
 use crate::body::{Bodies, BodyKind, Placed};
 use crate::each::Each as _;
 use crate::lanes::Real;
-use crate::motion::{Fast, FastBodies};
+use crate::motion::{Fast, FastBodies, TOUCH};
 use crate::seams::Seams;
 
 use approach::Reach;
@@ -61,8 +61,6 @@ use way::{Meeting, Other, Way};
 /// What a step knows that its fast bodies may meet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a, R> {
-    /// What counts as touching, metres.
-    pub(crate) skin_m: f64,
     /// Gaps the solver hears of, metres.
     pub(crate) margin: R,
     /// The step, seconds.
@@ -204,7 +202,8 @@ impl<R: Real> Continuous<R> {
         }
         let core = bodies.core[slot].to_f64();
         let hears_of_gaps = around.margin > R::ZERO;
-        let reach = Reach::new(around.skin_m, hears_of_gaps, core, &course, bodies.place_epsilon());
+        let skin = TOUCH * bodies.radius[slot].to_f64();
+        let reach = Reach::new(skin, hears_of_gaps, core, &course, bodies.place_epsilon());
         self.ways.push(Way::new(bodies, slot, course, reach));
         self.way_of[slot] = self.ways.len() as u32;
     }

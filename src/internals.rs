@@ -78,7 +78,7 @@ pub fn find_at(
     method: Broad,
     margin: f32,
 ) -> BroadCounts {
-    at_width!(lanes, broad.find(bodies, method, margin, 0.0, false))
+    at_width!(lanes, broad.find(bodies, method, margin.into(), 0.0, false))
 }
 
 /// [`Narrow::run`] with a margin, metres.
@@ -88,7 +88,7 @@ pub fn run_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>, pair
 
 /// [`Narrow::collide`] without margin.
 pub fn collide_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>) {
-    at_width!(lanes, narrow.collide(bodies, 0.0, 0.0, Stride { secs: 0.0, fallen: [0.0; 2] }));
+    at_width!(lanes, narrow.collide(bodies, 0.0.into(), 0.0, Stride { secs: 0.0, fallen: [0.0; 2] }));
 }
 
 /// [`fly`] without noting fast bodies.

@@ -20,7 +20,7 @@ use crate::island::Islands;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::measure::{Counts, Stage, Stopwatch, first_non_finite, non_finite_in};
-use crate::motion::{Motion, Plan, Skipped, Warm};
+use crate::motion::{Motion, Near, Plan, Skipped, Warm};
 use crate::narrow::{MovedBodies, Narrow, Stride};
 use crate::settings::{Settings, Skip, StiffFields};
 use crate::solve::substep_group::Goal;
@@ -159,7 +159,6 @@ impl<L: Lanes> World<L> {
         self.laws.fields = fields;
         let margin = needs.margin(solver);
         let around = Around {
-            skin_m: needs.touch(),
             margin,
             dt_secs,
             gravity: self.laws.forces.gravity.unwrap_or_default(),
@@ -197,7 +196,8 @@ impl<L: Lanes> World<L> {
     fn find_contacts(&mut self, needs: SceneNeeds, dt_secs: L::Elem) -> Seen {
         let Settings { solver, skips, broad, .. } = self.settings;
         let margin = needs.margin(solver);
-        let reach = margin + self.bodies.grain();
+        let near = Near { metres: L::Elem::ZERO, share: margin };
+        let reach = Near { metres: self.bodies.grain(), share: margin };
         let keep = skips.has(Skip::PairList);
         let ahead_secs = if self.motion.outlook.needs_speculative_margin && margin > L::Elem::ZERO {
             dt_secs
@@ -226,7 +226,7 @@ impl<L: Lanes> World<L> {
             let [gx, gy] = self.laws.forces.gravity.unwrap_or_default().each(L::Elem::from_f64);
             let fallen = [gx, gy].each(|pull| pull * dt_secs * dt_secs);
             let stride = Stride { secs: dt_secs, fallen };
-            self.narrow.collide::<L>(&self.bodies, margin, ahead_secs, stride);
+            self.narrow.collide::<L>(&self.bodies, near, ahead_secs, stride);
             self.solving.follow(&mut self.narrow.manifolds, &self.motion);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
@@ -256,7 +256,7 @@ impl<L: Lanes> World<L> {
             let (manifolds, looked_at) = self.narrow.found();
             let looked_at = looked_at.filter(|_| !seen.still);
             solving.prepare(bodies, (manifolds, looked_at), seen.changed || repaced, motion);
-            solving.note_depth(|| self.narrow.deepest(), context.needs.length);
+            solving.note_depth(|| self.narrow.deepest(bodies));
         }
         solving.prepare_joints(context, bodies, &self.joints, awake);
         let warm = solving.begin(context, bodies, &self.narrow.manifolds, motion);

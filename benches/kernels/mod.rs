@@ -32,7 +32,7 @@ use crate::common::{Answer, Settled};
 const SIZES: [usize; 2] = [150, 1000];
 
 /// What solvers are told of the scenes: the median bounding radius of the mixes' bodies, near enough.
-const TRAITS: SceneNeeds = SceneNeeds { friction: true, restitution: true, length: 0.4, gravity: 9.81 };
+const TRAITS: SceneNeeds = SceneNeeds { friction: true, restitution: true, gravity: 9.81 };
 
 /// The gap within which solvers want to hear of contacts, metres.
 fn margin() -> f32 {

@@ -37,6 +37,7 @@ pub(super) struct LongBodies<R> {
     /// Some of these are long.
     any_slender: bool,
     median_radius: f64,
+    largest_radius: f64,
     all_dynamic: bool,
 }
 
@@ -47,6 +48,7 @@ impl<R> Default for LongBodies<R> {
             plain: Vec::new(),
             any_slender: false,
             median_radius: 0.0,
+            largest_radius: 0.0,
             all_dynamic: false,
         }
     }
@@ -72,6 +74,11 @@ impl<R: Real> LongBodies<R> {
         self.median_radius
     }
 
+    /// Of movable bodies, metres; 0 where none moves.
+    pub(super) fn largest_radius(&self) -> f64 {
+        self.largest_radius
+    }
+
     /// Splits the living bodies into long and plain ones.
     pub(super) fn classify(&mut self, bodies: &Bodies<R>) {
         let mut radii: Vec<f64> = bodies
@@ -82,6 +89,7 @@ impl<R: Real> LongBodies<R> {
         radii.sort_unstable_by(f64::total_cmp);
         let median = radii.get(radii.len() / 2).copied().unwrap_or(f64::INFINITY);
         self.median_radius = median;
+        self.largest_radius = radii.last().copied().unwrap_or(0.0);
         self.bounds.clear();
         self.plain.clear();
         self.any_slender = false;

@@ -35,6 +35,7 @@ mod sweep;
 use crate::body::{Bodies, BodyKind};
 use crate::column::Column;
 use crate::lanes::{Lanes, Real};
+use crate::motion::Near;
 use crate::settings::Broad;
 
 /// Up to this many bodies `auto` compares all with all.
@@ -248,13 +249,13 @@ impl<R: Real> BroadPhase<R> {
         }
     }
 
-    /// Finds all pairs closer than `margin` metres by their bounds now or, as they move now, within `ahead_secs`;
+    /// Finds all pairs closer than `margin` by their bounds now or, as they move now, within `ahead_secs`;
     /// with `keep` a list may be found with a skin and serve for several steps.
     pub fn find<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
         method: Broad,
-        margin: R,
+        margin: Near<R>,
         ahead_secs: R,
         keep: bool,
     ) -> BroadCounts {
@@ -271,7 +272,8 @@ impl<R: Real> BroadPhase<R> {
         let skin = if keep { self.keep.next_skin(self.long.median_radius()) } else { R::ZERO };
         // Statics alone are no reason to see paths otherwise than relative to each other.
         let awake = self.some_sleep.then_some(self.frozen.awake_slots());
-        self.reach.measure::<L>(bodies, margin, skin, ahead_secs, awake);
+        let largest = R::from_f64(self.long.largest_radius());
+        self.reach.measure::<L>(bodies, (margin, largest), skin, ahead_secs, awake);
         self.find_afresh::<L>(bodies, method, gives_way);
         self.lists += 1;
         let candidates = self.pairs.len();

@@ -4,6 +4,7 @@ use crate::body::{Bodies, BodyKind};
 use crate::column::Column;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
+use crate::motion::Near;
 
 /// Metres per slot, half the margin included.
 #[derive(Clone, Debug)]
@@ -24,12 +25,13 @@ impl<R: Real> Default for Reach<R> {
 }
 
 impl<R: Real> Reach<R> {
-    /// Half of `margin`, and the larger of half of `skin` and what a body moves in `ahead_secs`. While some sleep,
-    /// only the slots in `awake` move, and paths are relative to what sleeps.
+    /// Half of `margin`, in which a body's own length counts, and for what nothing moves the `largest` there is: of two bodies
+    /// that is no less than the margin of the pair. And the larger of half of `skin` and what a body moves in `ahead_secs`. While
+    /// some sleep, only the slots in `awake` move, and paths are relative to what sleeps.
     pub(super) fn measure<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
-        margin: R,
+        (margin, largest): (Near<R>, R),
         skin: R,
         ahead_secs: R,
         awake: Option<&[u32]>,
@@ -37,28 +39,28 @@ impl<R: Real> Reach<R> {
         self.together.resize(bodies.len());
         self.alone.resize(bodies.len());
         let half = R::from_f64(0.5);
-        self.at_rest = half * (margin + skin);
-        if ahead_secs <= R::ZERO || awake.is_some() {
+        let (metres, share, skin) = (half * margin.metres, half * margin.share, half * skin);
+        self.at_rest = metres + share * largest + skin;
+        if let Some(awake) = awake {
             self.together.as_mut_slice().fill(self.at_rest);
             self.alone.as_mut_slice().fill(self.at_rest);
-        }
-        if ahead_secs <= R::ZERO {
-            return;
-        }
-        if let Some(awake) = awake {
             for k in awake.iter().map(|&slot| slot as usize) {
-                let path = path_ahead(bodies.vx[k], bodies.vy[k], half * margin, half * skin, ahead_secs);
+                let length = if bodies.kind(k) == BodyKind::Dynamic { bodies.radius[k] } else { largest };
+                let path = path_ahead(bodies.vx[k], bodies.vy[k], metres + share * length, skin, ahead_secs);
                 (self.together[k], self.alone[k]) = (path, path);
             }
             return;
         }
-        let [mean_x, mean_y] = mean_velocity(bodies).each(L::splat);
-        let (margin, skin, ahead) = (L::splat(half * margin), L::splat(half * skin), L::splat(ahead_secs));
-        let (vx, vy) = (bodies.vx.lanes::<L>(), bodies.vy.lanes::<L>());
+        let mean = if ahead_secs > R::ZERO { mean_velocity(bodies) } else { [R::ZERO; 2] };
+        let [mean_x, mean_y] = mean.each(L::splat);
+        let [metres, share, largest, skin, ahead] = [metres, share, largest, skin, ahead_secs].each(L::splat);
+        let columns = [&bodies.vx, &bodies.vy, &bodies.radius, &bodies.inv_mass].each(Column::lanes::<L>);
         for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            let path = |x, y| path_ahead(x, y, margin, skin, ahead);
-            self.together.lanes_mut::<L>()[at] = path(vx[at] - mean_x, vy[at] - mean_y);
-            self.alone.lanes_mut::<L>()[at] = path(vx[at], vy[at]);
+            let [vx, vy, radius, inv_mass] = columns.each(|column| column[at]);
+            let own = metres + share * L::select(L::zero().lt(inv_mass), radius, largest);
+            let path = |x, y| path_ahead(x, y, own, skin, ahead);
+            self.together.lanes_mut::<L>()[at] = path(vx - mean_x, vy - mean_y);
+            self.alone.lanes_mut::<L>()[at] = path(vx, vy);
         }
     }
 }

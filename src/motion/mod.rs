@@ -2,6 +2,7 @@
 //! integration leaves for the stages around it, so that none of them imports another's work.
 
 mod blocks;
+mod near;
 mod plan;
 
 use std::ops::Range;
@@ -12,6 +13,7 @@ use crate::force::acceleration;
 use crate::lanes::{Lanes, Real};
 
 pub(crate) use blocks::*;
+pub(crate) use near::{Near, TOUCH};
 pub use plan::Plan;
 
 /// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
@@ -59,7 +61,7 @@ pub struct Motion<R: Real> {
     pub velocity: Column<R>,
     /// Rows of four per slot: the last substep's displacement x, y, angle, –.
     pub moved: Column<R>,
-    /// Rows of four per slot: 1/m, 1/I, –, –.
+    /// Rows of four per slot: 1/m, 1/I, what lengths are shares of ([`Bodies::length`]), –.
     pub inverse_masses: Column<R>,
     /// Rows of four per slot: acceleration at the step's beginning x, y, angular, inverse mass; only where something bounces.
     pub acceleration: Column<R>,
@@ -164,7 +166,7 @@ impl<R: Real> Motion<R> {
     pub fn go_over_all(&mut self, bodies: &Bodies<R>) {
         let len = bodies.len();
         for (slot, row) in self.inverse_masses.fours_mut()[..len].iter_mut().enumerate() {
-            *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], R::ZERO, R::ZERO];
+            *row = [bodies.inv_mass[slot], bodies.inv_inertia[slot], bodies.length(slot), R::ZERO];
         }
         self.runs.clear();
         self.runs.push(0..len);
@@ -189,7 +191,7 @@ impl<R: Real> Motion<R> {
             }
         }
         let rows = self.inverse_masses.fours_mut()[..len].iter_mut().zip(asleep);
-        rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| *row = [R::ZERO; 4]);
+        rows.filter(|(_, asleep)| **asleep).for_each(|(row, _)| [row[0], row[1]] = [R::ZERO; 2]);
     }
 
     /// Bodies may be as fast as they like: something has changed.

@@ -1,6 +1,6 @@
 //! One bucket's pairs looked at, batch by batch.
 
-use super::margin::{Ahead, Margin};
+use super::margin::{Ahead, Margin, lengths};
 use super::todo::Todo;
 use super::{Found, Narrow, Pose, passing};
 use crate::body::{Bodies, fine_difference};
@@ -48,7 +48,7 @@ impl<R: Real> Gathered<'_, R> {
         kept: &mut Places<'_, R>,
         collide: &impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
     ) {
-        let looks_ahead = L::zero().lt(margin.ahead).any();
+        let (looks_ahead, by_length) = (L::zero().lt(margin.ahead).any(), L::zero().lt(margin.share).any());
         let mut at = 0;
         while at < todo.len {
             let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
@@ -59,7 +59,11 @@ impl<R: Real> Gathered<'_, R> {
                 (a.x, b.x) = (Vec2::zero(), to_b_finely(fine, [a.x, b.x], slots));
             }
             let ahead = looks_ahead.then(|| Ahead::of(self.speeds, slots));
-            let within = ahead.as_ref().map_or(margin.still, |ahead| margin.of(ahead));
+            let within = match &ahead {
+                Some(ahead) => margin.of(ahead),
+                None if by_length => margin.at_rest(lengths(self.speeds, slots)),
+                None => margin.still,
+            };
             let mut found = collide(&a, &b, slots, within);
             if let Some(ahead) = ahead {
                 let doubtful = ahead.may_pass(&found, b.x - a.x, margin.stride);

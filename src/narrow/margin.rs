@@ -3,7 +3,7 @@
 use super::Found;
 use super::passing::Stride;
 use crate::each::Each as _;
-use crate::lanes::{LaneMask, Lanes};
+use crate::lanes::{LaneMask, Lanes, Real};
 use crate::vec2::Vec2;
 
 /// How close is close enough.
@@ -11,6 +11,8 @@ use crate::vec2::Vec2;
 pub(super) struct Margin<L: Lanes> {
     /// Metres, for bodies at rest.
     pub(super) still: L,
+    /// Of a pair's length, in addition.
+    pub(super) share: L,
     /// Seconds of approach that are added.
     pub(super) ahead: L,
     /// How far bodies may go.
@@ -18,10 +20,16 @@ pub(super) struct Margin<L: Lanes> {
 }
 
 impl<L: Lanes> Margin<L> {
+    /// For bodies at rest.
+    #[inline(always)]
+    pub(super) fn at_rest(&self, length: L) -> L {
+        self.still + self.share * length
+    }
+
     #[inline(always)]
     pub(super) fn of(&self, ahead: &Ahead<L>) -> L {
         let path = ahead.velocity.length_squared().sqrt() * self.ahead;
-        self.still + path.min(L::lit(0.5) * ahead.radius)
+        self.at_rest(ahead.length) + path.min(L::lit(0.5) * ahead.radius)
     }
 }
 
@@ -31,6 +39,8 @@ pub(super) struct Ahead<L> {
     velocity: Vec2<L>,
     /// The smaller bounding radius, metres.
     radius: L,
+    /// The pair's length, metres.
+    pub(super) length: L,
     /// The sum of the radii of discs that both cover, metres.
     inner: L,
 }
@@ -40,7 +50,12 @@ impl<L: Lanes> Ahead<L> {
     pub(super) fn of(speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> Self {
         let [a, b] = slots.each(|slots| L::gather_fours(speeds, slots));
         let velocity = Vec2::new(b[0] - a[0], b[1] - a[1]);
-        Self { velocity, radius: a[2].min(b[2]), inner: a[3] + b[3] }
+        Self {
+            velocity,
+            radius: a[2].min(b[2]),
+            length: length_of(&a).min(length_of(&b)),
+            inner: a[3] + b[3],
+        }
     }
 
     /// Which pairs are apart, come as far as that in a stride, and do not go straight at each other: of those it has to be
@@ -56,4 +71,17 @@ impl<L: Lanes> Ahead<L> {
         let comes = separation.lt(length + fallen) & zero.lt(separation) & found.hits[0];
         (comes & ((self.inner - fallen) * length).lt(to_b.cross(way).abs())).bits()
     }
+}
+
+/// What lengths are shares of, from a row of speeds: the radius of what moves, of others beyond all.
+#[inline(always)]
+fn length_of<L: Lanes>([_, _, radius, inner]: &[L; 4]) -> L {
+    L::select(L::zero().lt(*inner), *radius, L::splat(L::Elem::FAR))
+}
+
+/// The lengths of `WIDTH` pairs, metres.
+#[inline(always)]
+pub(super) fn lengths<L: Lanes>(speeds: &[[L::Elem; 4]], slots: [&[u32]; 2]) -> L {
+    let [a, b] = slots.each(|slots| length_of(&L::gather_fours(speeds, slots)));
+    a.min(b)
 }

@@ -27,6 +27,7 @@ use crate::column::{Column, PAD};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{IN_ORDER, Lanes, ROW, Real};
+use crate::motion::Near;
 use crate::seams::Seams;
 use crate::vec2::{Rot, Vec2};
 
@@ -161,7 +162,7 @@ impl<R: Real> Narrow<R> {
         self.rebuild(bodies, pairs);
         self.choose(bodies.len(), MovedBodies::All);
         let stride = Stride { secs: R::ZERO, fallen: [R::ZERO; 2] };
-        self.collide::<L>(bodies, margin, R::ZERO, stride);
+        self.collide::<L>(bodies, margin.into(), R::ZERO, stride);
         self.manifolds.refresh();
     }
 
@@ -211,7 +212,7 @@ impl<R: Real> Narrow<R> {
     pub fn collide<L: Lanes<Elem = R>>(
         &mut self,
         bodies: &Bodies<R>,
-        margin: R,
+        margin: Near<R>,
         ahead_secs: R,
         stride: Stride<R>,
     ) {
@@ -224,10 +225,11 @@ impl<R: Real> Narrow<R> {
         if let Some(rows) = &bodies.fine {
             self.fine.clone_from(rows);
         }
-        if ahead_secs > R::ZERO {
+        if ahead_secs > R::ZERO || margin.share > R::ZERO {
             self.write_speeds::<L>(bodies);
         }
-        let margin = Margin { still: L::splat(margin), ahead: L::splat(ahead_secs), stride };
+        let [still, share, ahead] = [margin.metres, margin.share, ahead_secs].each(L::splat);
+        let margin = Margin { still, share, ahead, stride };
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
         self.run_bucket::<L>(bodies, &cc, margin, |a, b, _, margin| circle_circle::collide(a, b, margin));
         self.run_bucket::<L>(bodies, &cb, margin, |a, b, _, margin| circle_box::collide(a, b, margin));
@@ -271,12 +273,16 @@ impl<R: Real> Narrow<R> {
         (&mut self.manifolds, looked_at(&self.todo, &self.seamed))
     }
 
-    /// The deepest overlap of the pairs last looked at, negative, metres; 0 where there is none. Read out of what was
-    /// found, as few steps ask (noted while looking it cost all of them 2 to 7 % of this phase).
-    pub fn deepest(&self) -> f64 {
+    /// The deepest overlap of the pairs last looked at, negative, as a share of its pair's length; 0 where there is none. Read out
+    /// of what was found, as few steps ask (noted while looking it cost all of them 2 to 7 % of this phase).
+    pub fn deepest(&self, bodies: &Bodies<R>) -> f64 {
         let places = looked_at(&self.todo, &self.seamed).flatten().map(|&place| place as usize);
-        let gaps = places.flat_map(|at| &self.manifolds.gaps()[at][..self.manifolds.code(at).points()]);
-        gaps.fold(0.0, |least, gap| gap.to_f64().min(least))
+        let gaps = places.flat_map(|at| {
+            let [a, b] = self.manifolds.slots(at).map(|slot| bodies.length(slot as usize).to_f64());
+            let found = &self.manifolds.gaps()[at][..self.manifolds.code(at).points()];
+            found.iter().map(move |gap| gap.to_f64() / a.min(b))
+        });
+        gaps.fold(0.0, f64::min)
     }
 
     fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {

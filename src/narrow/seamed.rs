@@ -6,6 +6,7 @@ use super::Narrow;
 use crate::body::Bodies;
 use crate::contact::{Code, Places};
 use crate::lanes::{ROW, Real};
+use crate::motion::Near;
 use crate::seams::{Met, Seams};
 
 impl<R: Real> Narrow<R> {
@@ -44,7 +45,7 @@ impl<R: Real> Narrow<R> {
     }
 
     /// Finds the contacts of those pairs; margins as [`Narrow::collide`] has them.
-    pub(super) fn meet_seamed(&mut self, bodies: &Bodies<R>, margin: R, ahead_secs: R) {
+    pub(super) fn meet_seamed(&mut self, bodies: &Bodies<R>, margin: Near<R>, ahead_secs: R) {
         for at in 0..self.seamed.len() {
             let place = self.seamed[at];
             let slots = self.manifolds.slots(place as usize);
@@ -55,7 +56,9 @@ impl<R: Real> Narrow<R> {
             let speed = |slot: usize| DVec2::new(bodies.vx[slot].to_f64(), bodies.vy[slot].to_f64());
             let closing = (speed(other) - speed(own)).length() * ahead_secs.to_f64();
             let most = 0.5 * bodies.radius[other].to_f64().min(bodies.radius[own].to_f64());
-            let met = outline.meet(&bodies.placed(other), margin.to_f64() + closing.min(most));
+            let length = bodies.length(own).to_f64().min(bodies.length(other).to_f64());
+            let still = margin.metres.to_f64() + margin.share.to_f64() * length;
+            let met = outline.meet(&bodies.placed(other), still + closing.min(most));
             let mut places = self.manifolds.places();
             match met {
                 Some(met) => {

@@ -134,13 +134,11 @@ pub(super) struct SubstepCoefficients<L> {
     pub(super) h: L,
     /// Prediction less acceleration: 2 where bodies move by the mean velocity, else 1.
     pub(super) guess: L,
-    /// 1/median radius, 1/m.
-    pub(super) per_length: L,
 }
 
 impl<L: Lanes> SubstepCoefficients<L> {
     /// Of substeps of `h_secs`; `share` is what an impulse changes the displacement by over h times the velocity.
-    pub(super) fn new(h_secs: f64, share: f64, length_m: f64) -> Self {
+    pub(super) fn new(h_secs: f64, share: f64) -> Self {
         Self {
             per_h2: L::lit(1.0 / (h_secs * h_secs)),
             force: L::lit(1.0 / h_secs),
@@ -148,7 +146,6 @@ impl<L: Lanes> SubstepCoefficients<L> {
             velocity: L::lit(1.0 / h_secs),
             h: L::lit(h_secs),
             guess: L::lit(1.0 / share),
-            per_length: L::lit(1.0 / length_m),
         }
     }
 }
@@ -197,7 +194,7 @@ impl<L: Lanes> Avbd<L> {
         let [places, a, b] = &self.pairs;
         for at in (0..places.len()).step_by(L::WIDTH) {
             let (place, a, b) = (&places[at..at + L::WIDTH], &a[at..at + L::WIDTH], &b[at..at + L::WIDTH]);
-            let least = L::lit(START) * stiffness(manifolds, motion, place, [a, b], coefficients);
+            let least = L::lit(START) * stiffness(manifolds, motion, place, [a, b], coefficients).0;
             let [j0, j1, jt, k] = L::gather_fours(manifolds.impulses(), place);
             let fade = L::lit(KEEP * FADE);
             let k = least.max(k * L::lit(FADE));
@@ -280,9 +277,9 @@ impl<L: Lanes> Avbd<L> {
             let moved = [a, b].each(|slots| L::gather_fours(motion.moved.fours(), slots));
             let c = seen.violation(&moved[0], &moved[1], keep);
             let (force, counts) = seen.forces(&c);
-            let unit = stiffness(manifolds, motion, place, [a, b], coefficients);
+            let (unit, length) = stiffness(manifolds, motion, place, [a, b], coefficients);
             let miss = (c[0].abs() * counts[0]).max(c[1].abs() * counts[1]).max(c[2].abs() * counts[2]);
-            let k = seen.dual[3] + L::lit(GROWTH) * unit * (miss * coefficients.per_length);
+            let k = seen.dual[3] + L::lit(GROWTH) * unit * (miss / length);
             let k = k.min(L::lit(MOST) * unit);
             let [j0, j1, jt] = force.each(|force| force * coefficients.impulse);
             L::scatter_fours([j0, j1, jt, k], manifolds.impulses_mut(), place);
@@ -334,7 +331,7 @@ impl<L: Lanes> Avbd<L> {
     }
 }
 
-/// m/h² of the contacts' first points, N/m.
+/// m/h² of the contacts' first points, N/m, and the pairs' lengths, metres.
 #[inline(always)]
 fn stiffness<L: Lanes>(
     manifolds: &Manifolds<L::Elem>,
@@ -342,12 +339,13 @@ fn stiffness<L: Lanes>(
     places: &[u32],
     ends: [&[u32]; 2],
     coefficients: &SubstepCoefficients<L>,
-) -> L {
+) -> (L, L) {
     let row: [L; ROW] = L::gather_rows(manifolds.geometry(), places);
     let [ma, mb] = ends.each(|slots| L::gather_fours(motion.inverse_masses.fours(), slots));
     let (normal, arm) = (Vec2::new(row[0], row[1]), Vec2::new(row[2], row[3]));
     let (la, lb) = (arm.cross(normal), (arm - Vec2::new(row[6], row[7])).cross(normal));
-    coefficients.per_h2 * inverse((ma[0] + mb[0]) + (ma[1] * (la * la) + mb[1] * (lb * lb)))
+    let unit = coefficients.per_h2 * inverse((ma[0] + mb[0]) + (ma[1] * (la * la) + mb[1] * (lb * lb)));
+    (unit, ma[2].min(mb[2]))
 }
 
 /// Δx of H·Δx = f by LDLᵀ; 0 for padding, whose H is 0.
@@ -383,11 +381,7 @@ impl<L: Lanes> ContactSolver<L> for Blocks {
             avbd.cut(bodies, manifolds);
         }
         let (h_secs, share) = (substep.h_secs(), substep.share());
-        avbd.settle(
-            manifolds,
-            substep.motion,
-            &SubstepCoefficients::new(h_secs, share, substep.context.needs.length),
-        );
+        avbd.settle(manifolds, substep.motion, &SubstepCoefficients::new(h_secs, share));
         if let Some(joints) = &mut substep.joints {
             let (rows, moved) = (substep.motion.velocity.fours_mut(), substep.motion.moved.fours());
             joints.relax(rows, moved, &Stiffness::soft(h_secs, share));

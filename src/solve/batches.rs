@@ -302,15 +302,15 @@ fn parts<L: Lanes, const POINTS: usize>(
         }
     }
     let masses = |slots: &[u32; 16]| {
-        let [inv_mass, inv_inertia, ..] = L::gather_fours(inverse_masses, slots);
-        [inv_mass, inv_inertia]
+        let [inv_mass, inv_inertia, length, _] = L::gather_fours(inverse_masses, slots);
+        [inv_mass, inv_inertia, length]
     };
     let second = if POINTS == 2 { held.points[POINTS - 1].impulse() } else { L::zero() };
     Parts {
         geometry: L::gather_rows(manifolds.geometry(), places),
         gap: L::gather_fours(manifolds.gaps(), places),
         impulses: [held.points[0].impulse(), second, held.tangent_impulse],
-        inverse_masses: slots.each(masses),
+        matter: slots.each(masses),
         two_points: L::zero().lt(L::load(&two_points)),
     }
 }

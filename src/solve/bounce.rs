@@ -238,7 +238,7 @@ pub(crate) struct Bounce<'a, L: Lanes> {
     pub rows: &'a mut [[L::Elem; 4]],
     /// What bounces displace, per slot: x, y, angle, –; zeros before the first round.
     pub displaced: &'a mut [[L::Elem; 4]],
-    /// Gaps up to this count as touched, metres.
+    /// Gaps up to this share of the pair's length count as touched.
     pub touch: L,
     /// Displacement of the last substep per slot; `None` where gaps are up to date.
     pub moved: Option<&'a [[L::Elem; 4]]>,
@@ -270,7 +270,7 @@ impl<L: Lanes> Visit<L> for Bounce<'_, L> {
         let bounces: [L::Mask; POINTS] = crate::each::indexed(|k| {
             // One that nothing has stopped yet will be met in the next step.
             let stopped = (L::lit(-0.5) * noted[k].begins).le(normals.velocity(&c.points[k]));
-            let touches = gaps[k].le(self.touch) | zero.lt(noted[k].bounced);
+            let touches = gaps[k].le(self.touch * c.length) | zero.lt(noted[k].bounced);
             zero.lt(noted[k].begins) & touches & stopped
         });
         let where_bounces = |of: &dyn Fn(usize) -> L| -> [L; POINTS] {
@@ -329,12 +329,12 @@ pub(crate) struct MoveOut<'a, L: Lanes, F> {
 }
 
 /// What bounces displaced into others, or deeper into them; what overlapped before may, as much.
-pub(crate) fn by_bounces<L: Lanes>(gap: L, way: L, _: L) -> L {
+pub(crate) fn by_bounces<L: Lanes>([gap, way, ..]: [L; 4]) -> L {
     let zero = L::zero();
     L::select(way.lt(zero), zero.min(way + zero.max(gap)), zero)
 }
 
-impl<L: Lanes, F: Fn(L, L, L) -> L> Visit<L> for MoveOut<'_, L, F> {
+impl<L: Lanes, F: Fn([L; 4]) -> L> Visit<L> for MoveOut<'_, L, F> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let side = |slots: &[u32]| {
@@ -345,7 +345,7 @@ impl<L: Lanes, F: Fn(L, L, L) -> L> Visit<L> for MoveOut<'_, L, F> {
         let gaps = gaps(c, &ends, self.moved);
         let entered: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
-            (self.entered)(gaps[k], displacements.velocity(point), point.mass)
+            (self.entered)([gaps[k], displacements.velocity(point), point.mass, c.length])
         });
         if !entered.iter().any(|entered| entered.lt(L::zero()).any()) {
             return;

@@ -5,7 +5,7 @@
 //! Both points of a face lie on one line along t, so one friction impulse bounded by μ(λ₀ + λ₁) does what two
 //! would: a third less work, tried against two and no pile or slope told them apart.
 //!
-//! Bytes per contact in f32: two points 80 (19 values and the restitution), one point 60 (15 values), and 8 for the slots.
+//! Bytes per contact in f32: two points 84 (20 values and the restitution), one point 64 (16 values), and 8 for the slots.
 //! Kept out: masses (they come with the bodies' rows), arms (levers serve), whatever only some solver wants.
 
 mod lane;
@@ -90,6 +90,8 @@ pub struct Constraint<L, const POINTS: usize> {
     pub friction: L,
     /// Coefficient of restitution.
     pub restitution: L,
+    /// What lengths without a scale of their own are shares of: the lesser bounding radius of what moves, metres.
+    pub length: L,
 }
 
 /// The rows of `WIDTH` manifolds and bodies, gathered: what a constraint is prepared from.
@@ -101,8 +103,8 @@ pub struct Parts<L: Lanes> {
     pub gap: [L; 4],
     /// Of both points and along the tangent, N·s per substep.
     pub impulses: [L; 3],
-    /// 1/m, 1/I of A and B.
-    pub inverse_masses: [[L; 2]; 2],
+    /// 1/m, 1/I and length of A and B.
+    pub matter: [[L; 3]; 2],
     /// Lanes whose manifold has two points.
     pub two_points: L::Mask,
 }
@@ -124,7 +126,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         let to_b = Vec2::new(dx, dy);
         let arms = [Vec2::new(ax0, ay0), Vec2::new(ax1, ay1)];
         let zero = L::zero();
-        let [[ma, ia], [mb, ib]] = parts.inverse_masses;
+        let [[ma, ia, length_a], [mb, ib, length_b]] = parts.matter;
         let levers = |arm: Vec2<L>, axis: Vec2<L>| [arm.cross(axis), (arm - to_b).cross(axis)];
         let response = |[la, lb]: [L; 2]| (ma + mb) + (ia * (la * la) + ib * (lb * lb));
         let points = crate::each::indexed(|k| {
@@ -160,6 +162,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             tangent_impulse: parts.impulses[2],
             friction: parts.gap[2],
             restitution: parts.gap[3],
+            length: length_a.min(length_b),
         }
     }
 
@@ -176,6 +179,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             tangent_impulse: zero,
             friction: zero,
             restitution: zero,
+            length: zero,
         }
     }
 

@@ -8,7 +8,7 @@
 
 use crate::lanes::Lanes;
 
-/// Overlaps over this share of the scene's median radius are deep, where bodies have just come or changed. What sinks into
+/// Overlaps over this share of the pair's length are deep, where bodies have just come or changed. What sinks into
 /// something under a load is not treated so: a pile of 10,000 that fell with 2 substeps lost its springs' push and
 /// collapsed (0.2 m of overlap on average instead of 0.02).
 pub(super) const DEEP: f64 = 0.03;

@@ -23,7 +23,7 @@ use crate::lanes::Lanes;
 
 /// Share of the depth beyond the slop that one pass takes away (the thesis's percent).
 const CORRECTION_SHARE: f64 = 0.7;
-/// Depth left alone, over the scene's median radius (the thesis's 0.01 px over half its bodies' 25 px).
+/// Depth left alone, over the pair's length (the thesis's 0.01 px over half its bodies' 25 px).
 const SLOP: f64 = 1e-3;
 
 /// Velocities of all contacts. `moved`: displacements not yet known to the constraints.
@@ -94,7 +94,7 @@ struct Correct<'a, L: Lanes> {
     moved: &'a mut [[L::Elem; 4]],
     /// Velocity rows, for their inverse masses.
     rows: &'a [[L::Elem; 4]],
-    /// Depth left alone, metres.
+    /// Depth left alone, over the pair's length.
     slop: L,
 }
 
@@ -108,7 +108,7 @@ impl<L: Lanes> Visit<L> for Correct<'_, L> {
         let normals = Normals::begin(c, &a, &b);
         let sinking: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
-            let excess = -(point.separation + normals.velocity(point)) - self.slop;
+            let excess = -(point.separation + normals.velocity(point)) - self.slop * c.length;
             -(L::zero().max(excess) * L::lit(CORRECTION_SHARE))
         });
         part(c, normals, sinking, [&mut a, &mut b]);
@@ -135,7 +135,7 @@ impl<L: Lanes> ContactSolver<L> for Impulse {
     }
 
     fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
-        let slop = L::lit(SLOP * substep.context.needs.length);
+        let slop = L::lit(SLOP);
         let (moved, rows) = (substep.motion.moved.fours_mut(), substep.motion.velocity.fours());
         substep.stream.visit(&mut Correct { moved, rows, slop });
     }

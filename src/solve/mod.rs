@@ -67,21 +67,17 @@ pub struct SceneNeeds {
     pub friction: bool,
     /// Some body bounces.
     pub restitution: bool,
-    /// Median bounding radius of movable bodies, metres: what lengths without a scale of their own are shares of.
-    pub length: f64,
     /// |gravity|, m/s².
     pub gravity: f64,
 }
 
-/// Gaps up to this share of the scene's median radius are contacts.
+/// Gaps up to this share of a pair's length ([`Bodies::length`](crate::body::Bodies::length)) are contacts.
 const MARGIN: f64 = 0.025;
 /// Bodies as fast as gravity makes them in so many steps are looked ahead for; slower ones stay within the margin.
 const SWIFT_STEPS: f64 = 3.0;
 /// Approaches slower than gravity makes in so many steps do not bounce. A ball comes to rest by itself before
 /// ([`bounce`]); this is for those that gravity does not bring back. At 3, a disc of e = 0.8 rested 6 % early.
 const BOUNCE_STEPS: f64 = 0.01;
-/// Gaps up to this share of the median radius have touched: when a bounce is due, when a fast body is stopped.
-const TOUCH: f64 = 1e-3;
 
 impl SceneNeeds {
     /// The terms a solver must have, given what may be left out.
@@ -94,16 +90,11 @@ impl SceneNeeds {
         }
     }
 
-    /// Gaps up to this have touched, metres.
-    pub fn touch(self) -> f64 {
-        TOUCH * self.length
-    }
-
-    /// The gap within which a solver wants to hear of contacts, metres.
+    /// The gap within which a solver wants to hear of contacts, as a share of a pair's length.
     pub fn margin<R: Real>(self, solver: Solver) -> R {
         match solver {
             Solver::Impulse => R::ZERO,
-            Solver::Pgs | Solver::Soft | Solver::Xpbd | Solver::Avbd => R::from_f64(MARGIN * self.length),
+            Solver::Pgs | Solver::Soft | Solver::Xpbd | Solver::Avbd => R::from_f64(MARGIN),
         }
     }
 }

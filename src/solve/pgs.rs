@@ -19,7 +19,7 @@ use crate::lanes::Lanes;
 const ITERATIONS: usize = 8;
 /// Share of the overlap beyond the slop that one substep takes away.
 const BAUMGARTE: f64 = 0.2;
-/// Overlap left alone, over the scene's median radius.
+/// Overlap left alone, over the pair's length.
 const SLOP: f64 = 1e-3;
 
 /// One iteration: all contacts once. `moved`: displacements not yet known to the constraints.
@@ -30,7 +30,7 @@ fn iterate<L: Lanes>(
     moved: Option<&[[L::Elem; 4]]>,
 ) {
     let h_secs = context.plan.h_secs;
-    let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP * context.needs.length));
+    let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP));
     let bias_rate = L::lit(BAUMGARTE / h_secs);
     if context.needs.friction {
         stream.visit(&mut Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
@@ -50,7 +50,7 @@ struct Pass<'a, L: Lanes, const FRICTION: bool> {
     per_sec: L,
     /// β/h.
     bias_rate: L,
-    /// Overlap left alone, metres.
+    /// Overlap left alone, over the pair's length.
     slop: L,
 }
 
@@ -70,7 +70,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Pass<'_, L, FRICTION> {
         let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let gap = zero.max(point.separation) * self.per_sec;
-            let overlap = zero.max(-(point.separation + self.slop)) * self.bias_rate;
+            let overlap = zero.max(-(point.separation + self.slop * c.length)) * self.bias_rate;
             normals.velocity(point) + gap - overlap - answer[k]
         });
         let next = non_negative(cross, masses, wanted);

@@ -87,7 +87,7 @@ impl Default for SlenderStacks {
 }
 
 impl SlenderStacks {
-    /// A visitor that notes contacts whose gap is at most `touch`, metres, or that carry something.
+    /// A visitor that notes contacts whose gap is at most `touch` of the pair's length, or that carry something.
     pub(super) fn reading<L: Lanes>(&mut self, touch: f64) -> Touching<'_, L> {
         self.edges.clear();
         Touching { edges: &mut self.edges, touch: L::lit(touch) }
@@ -238,7 +238,7 @@ impl<L: Lanes> Visit<L> for Touching<'_, L> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let zero = L::zero();
         let touches = c.points.each(|point| {
-            let near = zero.lt(point.velocity_impulse) | point.separation.le(self.touch);
+            let near = zero.lt(point.velocity_impulse) | point.separation.le(self.touch * c.length);
             L::select(near & zero.lt(point.mass), point.mass, zero).to_array()
         });
         let levers = c.points.each(|point| point.levers[0].to_array());

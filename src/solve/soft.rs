@@ -32,7 +32,7 @@ pub use crate::settings::HERTZ_TIMES_SUBSTEP;
 pub(crate) const STIFFENING: f64 = 0.97;
 /// Damping ratio ζ: from 5 to 20 a pyramid of base 100 drifts by 5 to 8 cm in 60 s; 1 and 3 shake more.
 pub(crate) const DAMPING: f64 = 10.0;
-/// Fastest push out of an overlap: this share of the scene's median radius per step.
+/// Fastest push out of an overlap: this share of the pair's length per step.
 pub const PUSH_CAP: f64 = 0.1;
 
 /// The coefficients of a soft contact for one substep length.
@@ -44,7 +44,7 @@ pub(crate) struct Softness<L> {
     pub bias_rate: L,
     /// Factor on the effective mass.
     pub mass_scale: L,
-    /// Fastest push, m/s, negated.
+    /// Fastest push over the pair's length, 1/s, negated.
     pub push_cap: L,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn coefficients(h_secs: f64, hertz: f64, damping: f64) -> (f64, f64) 
 }
 
 impl<L: Lanes> Softness<L> {
-    /// For substeps of `h_secs`, a frequency of `hertz` and overlaps pushed out at `push_cap` m/s at most.
+    /// For substeps of `h_secs`, a frequency of `hertz` and overlaps pushed out at `push_cap` lengths a second at most.
     pub(crate) fn new(h_secs: f64, hertz: f64, damping: f64, push_cap: f64) -> Self {
         let (bias_rate, mass_scale) = coefficients(h_secs, hertz, damping);
         Self {
@@ -98,7 +98,9 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
         let mut normals = Normals::begin(c, &a, &b);
         let cross = cross(c, &normals);
         let apart: [L::Mask; POINTS] = crate::each::indexed(|k| zero.lt(c.points[k].separation));
-        let is_deep: [L::Mask; POINTS] = crate::each::indexed(|k| c.points[k].separation.lt(self.deep));
+        let deep = self.deep * c.length;
+        let is_deep: [L::Mask; POINTS] = crate::each::indexed(|k| c.points[k].separation.lt(deep));
+        let push_cap = soft.push_cap * c.length;
         let soften: [L; POINTS] = crate::each::indexed(|k| {
             let rigid = if DEEP { apart[k] | is_deep[k] } else { apart[k] };
             L::select(rigid, L::one(), soft.mass_scale)
@@ -110,7 +112,7 @@ impl<L: Lanes, const DEEP: bool> Visit<L> for Push<'_, L, DEEP> {
         let wanted: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
             let closing = point.separation * soft.per_sec;
-            let pushing = soft.push_cap.max(point.separation * soft.bias_rate);
+            let pushing = push_cap.max(point.separation * soft.bias_rate);
             let pushing = if DEEP { L::select(is_deep[k], zero, pushing) } else { pushing };
             normals.velocity(point) + L::select(apart[k], closing, pushing) - answer[k]
         });
@@ -167,9 +169,9 @@ impl<L: Lanes> ContactSolver<L> for Soft {
             joints.solve_directly(rows, Some(&Stiffness::soft(h_secs, share)));
         }
         let moved = substep.behind.then_some(substep.motion.moved.fours());
-        let cap = PUSH_CAP * context.needs.length / context.dt_secs;
+        let cap = PUSH_CAP / context.dt_secs;
         let soft = Softness::new(h_secs, substep.softened * (context.stiffness / h_secs), DAMPING, cap);
-        let deep = L::lit(-DEEP * context.needs.length);
+        let deep = L::lit(-DEEP);
         let [share, per_share] = [share, 1.0 / share].each(L::lit);
         if substep.deep {
             substep.stream.visit(&mut Push::<L, true> { rows, moved, soft, deep, share, per_share });

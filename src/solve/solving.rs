@@ -144,9 +144,9 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// After bodies have come: notes how deep the deepest of the pairs last looked at is; later ones are looked at as a
-    /// step ends. `deepest`: metres, negative; `length`: the scene's median radius.
-    pub fn note_depth(&mut self, deepest: impl FnOnce() -> f64, length: f64) {
-        if std::mem::take(&mut self.deep.fresh) && deepest() < -deep::DEEP * length {
+    /// step ends. `deepest`: over its pair's length, negative.
+    pub fn note_depth(&mut self, deepest: impl FnOnce() -> f64) {
+        if std::mem::take(&mut self.deep.fresh) && deepest() < -deep::DEEP {
             self.deep.steps = deep::STEPS;
         }
     }

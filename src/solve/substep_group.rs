@@ -36,6 +36,7 @@ use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::force::Field;
 use crate::lanes::{Lanes, Real};
+use crate::motion::TOUCH;
 use crate::partition::Sets;
 
 use goal::{Island, aimed};
@@ -188,8 +189,8 @@ impl<R: Real> SubstepGroups<R> {
     }
 
     /// A visitor that notes what touches.
-    pub(super) fn touching<L: Lanes>(&mut self, goal: &Goal) -> Touching<'_, L> {
-        self.seen.slender_stacks.reading(goal.touch)
+    pub(super) fn touching<L: Lanes>(&mut self) -> Touching<'_, L> {
+        self.seen.slender_stacks.reading(TOUCH)
     }
 
     /// What stacks need, by what has been noted. `joints`: the slots they join; `direct`: contacts that are solved at once.

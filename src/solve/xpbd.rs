@@ -30,7 +30,7 @@ use crate::lanes::{LaneMask, Lanes};
 
 /// Compliance α of contacts, m/N.
 const COMPLIANCE: f64 = 0.0;
-/// Overlap from before the substep that one substep takes away at most: this share of the scene's median radius
+/// Overlap from before the substep that one substep takes away at most: this share of the pair's length
 /// per step, spread over the substeps.
 const PUSH_CAP: f64 = 0.1;
 
@@ -42,7 +42,7 @@ fn project<L: Lanes>(
     rows: &mut [[L::Elem; 4]],
 ) {
     let h_secs = context.plan.h_secs;
-    let cap = PUSH_CAP * context.needs.length / f64::from(context.plan.substeps);
+    let cap = PUSH_CAP / f64::from(context.plan.substeps);
     let per_sec = L::lit(1.0 / (h_secs * context.plan.impulse_share()));
     let (softness, push_cap) = (L::lit(COMPLIANCE / (h_secs * h_secs)), L::lit(-cap));
     if context.needs.friction {
@@ -78,7 +78,7 @@ struct Project<'a, L: Lanes, const FRICTION: bool> {
     softness: L,
     /// Velocity per displacement: 1/(h·share), 1/s.
     per_sec: L,
-    /// −[`PUSH_CAP`] in metres per substep.
+    /// −[`PUSH_CAP`] in lengths per substep.
     push_cap: L,
 }
 
@@ -100,7 +100,7 @@ impl<L: Lanes, const FRICTION: bool> Visit<L> for Project<'_, L, FRICTION> {
         let soft: [L; POINTS] = crate::each::indexed(|k| masses[k] * soften[k]);
         let gaps: [L; POINTS] = crate::each::indexed(|k| {
             let point = &c.points[k];
-            self.push_cap.max(point.separation) + normals.velocity(point)
+            (self.push_cap * c.length).max(point.separation) + normals.velocity(point)
         });
         let pushed = non_negative(cross(c, &normals), soft, gaps);
         c.tangent_impulse = zero;

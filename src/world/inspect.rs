@@ -43,11 +43,11 @@ impl<L: Lanes> World<L> {
         }
         self.laws.stiff.look_over(&self.bodies, &self.laws.forces, &self.laws.fields);
         let some = |column: &[L::Elem]| column.iter().any(|v| *v > L::Elem::ZERO);
+        self.broad.look_over(&self.bodies);
         let [gx, gy] = self.laws.forces.gravity.unwrap_or_default();
         self.laws.needs = SceneNeeds {
             friction: some(self.bodies.friction.as_slice()),
             restitution: some(self.bodies.restitution.as_slice()),
-            length: self.broad.look_over(&self.bodies),
             gravity: gx.hypot(gy),
         };
         self.motion.resize(&self.bodies);

@@ -7,21 +7,23 @@ use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
 /// How many values a lane holds.
-pub(in crate::solve) const LANE_VALUES: usize = 20;
-/// What one lane holds: normal (2), inverse inertias (2), the tangent's levers (2), mass and impulse, friction, restitution;
+pub(in crate::solve) const LANE_VALUES: usize = 21;
+/// What one lane holds: normal (2), inverse inertias (2), the tangent's levers (2), mass and impulse, friction, restitution, length;
 /// of each point levers (2), mass, separation and impulse over mass. A second point that is none is 0.
 pub(in crate::solve) type LaneValues<R> = [R; LANE_VALUES];
 
 /// Indices into [`LaneValues`].
 pub(in crate::solve) mod at {
+    /// Of a point, metres: of A, and B's follows.
+    pub(in crate::solve) const LEVERS: [usize; 2] = [11, 16];
     /// Along the tangent, N·s.
     pub(in crate::solve) const TANGENT_IMPULSE: usize = 7;
     /// Of a point, kg.
-    pub(in crate::solve) const MASS: [usize; 2] = [12, 17];
+    pub(in crate::solve) const MASS: [usize; 2] = [13, 18];
     /// Of a point, metres.
-    pub(in crate::solve) const SEPARATION: [usize; 2] = [13, 18];
+    pub(in crate::solve) const SEPARATION: [usize; 2] = [14, 19];
     /// Of a point, m/s.
-    pub(in crate::solve) const VELOCITY_IMPULSE: [usize; 2] = [14, 19];
+    pub(in crate::solve) const VELOCITY_IMPULSE: [usize; 2] = [15, 20];
 }
 
 impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
@@ -72,7 +74,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     #[inline(always)]
     fn values(&self) -> [&L; LANE_VALUES] {
         let Self { normal, inv_inertia: [ia, ib], tangent_levers: [ta, tb], .. } = self;
-        let Self { tangent_mass, tangent_impulse, friction, restitution, .. } = self;
+        let Self { tangent_mass, tangent_impulse, friction, restitution, length, .. } = self;
         let [p, q] = [&self.points[0], &self.points[POINTS - 1]];
         let [[pa, pb], [qa, qb]] = [&p.levers, &q.levers];
         [
@@ -86,6 +88,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
             tangent_impulse,
             friction,
             restitution,
+            length,
             pa,
             pb,
             &p.mass,
@@ -106,14 +109,15 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         for (k, value) in [&mut normal.x, &mut normal.y, ia, ib, ta, tb].into_iter().enumerate() {
             how(k, value);
         }
-        let Self { tangent_mass, tangent_impulse, friction, restitution, .. } = self;
-        for (k, value) in [tangent_mass, tangent_impulse, friction, restitution].into_iter().enumerate() {
+        let Self { tangent_mass, tangent_impulse, friction, restitution, length, .. } = self;
+        let rest = [tangent_mass, tangent_impulse, friction, restitution, length];
+        for (k, value) in rest.into_iter().enumerate() {
             how(6 + k, value);
         }
         for (number, point) in self.points.iter_mut().enumerate() {
             let Point { levers: [la, lb], mass, separation, velocity_impulse } = point;
             for (k, value) in [la, lb, mass, separation, velocity_impulse].into_iter().enumerate() {
-                how(10 + 5 * number + k, value);
+                how(11 + 5 * number + k, value);
             }
         }
     }

@@ -48,9 +48,9 @@ pub(in crate::solve) struct Bias {
     pub per_sec: f64,
     /// Bias velocity per metre of overlap, 1/s.
     pub rate: f64,
-    /// Fastest push, m/s, negated.
+    /// Fastest push over the pair's length, 1/s, negated.
     pub push_cap: f64,
-    /// Points with a smaller separation, metres, only stop closing.
+    /// Points with a smaller separation over the pair's length only stop closing.
     pub deep: f64,
     /// What an impulse changes moving velocities by, over what it changes velocities by.
     pub share: f64,
@@ -139,7 +139,7 @@ impl<L: Lanes> Visit<L> for Read<'_, L::Elem> {
                     inv_inertia: c.inv_inertia.each(|value| number(value, lane)),
                     mass,
                     impulse: stopped * mass * self.share,
-                    least: self.pass.least(separation, stopped),
+                    least: self.pass.least(separation, stopped, number(c.length, lane)),
                     pushed: matches!(self.pass, Pass::Push(_)) && separation <= 0.0,
                 });
             }
@@ -149,11 +149,11 @@ impl<L: Lanes> Visit<L> for Read<'_, L::Elem> {
 
 impl Pass<'_> {
     /// What the velocity of a point is to be at least, m/s.
-    fn least(&self, separation: f64, stopped: f64) -> f64 {
+    fn least(&self, separation: f64, stopped: f64, length: f64) -> f64 {
         match self {
             Pass::Push(bias) if separation > 0.0 => -separation * bias.per_sec,
-            Pass::Push(bias) if separation < bias.deep => 0.0,
-            Pass::Push(bias) => -(separation * bias.rate).max(bias.push_cap),
+            Pass::Push(bias) if separation < bias.deep * length => 0.0,
+            Pass::Push(bias) => -(separation * bias.rate).max(bias.push_cap * length),
             // A point that carried nothing may go on closing its gap.
             Pass::Relax(per_sec) if stopped <= 0.0 => -separation.max(0.0) * per_sec,
             Pass::Relax(_) => 0.0,

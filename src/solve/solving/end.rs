@@ -4,7 +4,7 @@ use super::{Follow, Solving};
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
-use crate::motion::Motion;
+use crate::motion::{Motion, TOUCH};
 use crate::settings::Solver;
 use crate::solve::bounce::{self, Bouncing, MoveOut};
 use crate::solve::joint::Stiffness;
@@ -27,7 +27,7 @@ impl<L: Lanes> Solving<L> {
             }
         }
         if self.deep.steps > 0 && context.solver == Solver::Soft {
-            self.deep.steps = if self.part_deep(context, motion, settled) { self.deep.steps - 1 } else { 0 };
+            self.deep.steps = if self.part_deep(motion, settled) { self.deep.steps - 1 } else { 0 };
         }
         self.behind = !settled;
     }
@@ -45,7 +45,7 @@ impl<L: Lanes> Solving<L> {
         // Left as zeros by what was displaced before.
         self.bouncing.displaced.resize(motion.velocity.fours().len(), [L::Elem::ZERO; 4]);
         self.bouncing.mark_jointed(&self.joints, motion.velocity.fours().len());
-        let Some(jointed) = self.bounce_once(context, motion, settled) else { return false };
+        let Some(jointed) = self.bounce_once(motion, settled) else { return false };
         if jointed {
             self.displace_with_joints(context, motion, settled);
             let [h_secs, share] = [context.plan.h_secs, context.plan.impulse_share()];
@@ -53,7 +53,7 @@ impl<L: Lanes> Solving<L> {
             self.joints.note();
             for _ in 0..bounce::ROUNDS {
                 self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
-                self.bounce_once(context, motion, settled);
+                self.bounce_once(motion, settled);
             }
             self.joints.relax_velocities(motion.velocity.fours_mut(), &how);
             self.joints.restore();
@@ -66,15 +66,10 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// One round over the contacts that bounce: `None` where none does, else whether joints hold one of their bodies.
-    fn bounce_once(
-        &mut self,
-        context: &SolverContext<'_, L::Elem>,
-        motion: &mut Motion<L::Elem>,
-        settled: bool,
-    ) -> Option<bool> {
+    fn bounce_once(&mut self, motion: &mut Motion<L::Elem>, settled: bool) -> Option<bool> {
         let Self { bouncing: Bouncing { displaced, bounces, jointed, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), (!settled).then_some(motion.moved.fours()));
-        let touch = L::lit(context.needs.touch());
+        let touch = L::lit(TOUCH);
         let (any, any_jointed) = (false, false);
         let mut pass = bounce::Bounce { rows, displaced, touch, moved, bounces, jointed, any, any_jointed };
         stream.visit(&mut pass);
@@ -102,7 +97,7 @@ impl<L: Lanes> Solving<L> {
         }
         for _ in 0..bounce::ROUNDS {
             self.joints.relax_velocities(&mut self.bouncing.displaced, &over_a_second);
-            self.bounce_once(context, motion, settled);
+            self.bounce_once(motion, settled);
         }
         self.joints.relax_velocities(&mut self.bouncing.displaced, &over_a_second);
         self.joints.restore();
@@ -110,17 +105,13 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Moves what is deep in something else out of it; says whether anything is.
-    fn part_deep(
-        &mut self,
-        context: &SolverContext<'_, L::Elem>,
-        motion: &mut Motion<L::Elem>,
-        settled: bool,
-    ) -> bool {
+    fn part_deep(&mut self, motion: &mut Motion<L::Elem>, settled: bool) -> bool {
         let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours(), motion.moved.fours());
         displaced.resize(rows.len(), [L::Elem::ZERO; 4]);
-        let [deep, most] = [deep::DEEP, soft::PUSH_CAP].each(|share| L::lit(share * context.needs.length));
-        let entered = |gap, way, mass| deep::owed(deep, most, [gap, way, mass]);
+        let [deep, most] = [deep::DEEP, soft::PUSH_CAP].each(L::lit);
+        let entered =
+            |[gap, way, mass, length]: [L; 4]| deep::owed(deep * length, most * length, [gap, way, mass]);
         let moved = (!settled).then_some(moved);
         let mut pass = MoveOut { rows, displaced, moved, entered, any: false };
         stream.visit(&mut pass);

@@ -26,7 +26,7 @@ impl<L: Lanes> Solving<L> {
             if let Some(loads) = loads.as_mut().filter(|_| !flew) {
                 self.stream.visit(loads);
             }
-            let mut touching = self.substep_groups.touching(goal);
+            let mut touching = self.substep_groups.touching();
             if !flew {
                 self.stream.visit(&mut touching);
             }

@@ -23,7 +23,7 @@ impl<L: Lanes> Stream<L> {
             // As `Constraint::gap_change` reckons, to the bit.
             let [a, b] = slots.each(|slot| moved[slot as usize]);
             let along = (b[0] - a[0]) * values[0] + (b[1] - a[1]) * values[1];
-            for (levers, separation) in [10, 15].into_iter().zip(at::SEPARATION) {
+            for (levers, separation) in at::LEVERS.into_iter().zip(at::SEPARATION) {
                 let change = along + (b[2] * values[levers + 1] - a[2] * values[levers]);
                 values[separation] += change;
             }

@@ -31,8 +31,6 @@ pub struct Goal {
     pub stiffness: f64,
     /// What an impulse changes displacements by, over what it changes velocities by.
     pub share: f64,
-    /// Gaps up to this touch, metres.
-    pub touch: f64,
     /// What sinks in by much of its size gets more: neither a bound nor a stiffness was asked for.
     pub holds_up: bool,
 }
@@ -45,10 +43,9 @@ impl Goal {
         let (max_sag, base, share) = (settings.max_sag, plan.substeps, plan.impulse_share());
         let looks_for_towers =
             context.solver == Solver::Soft && !settings.fixed_substeps && forces.attraction.is_none();
-        let touch = context.needs.touch();
         let paced = max_sag.is_some() || looks_for_towers;
         let holds_up = max_sag.is_none() && settings.stiffness.is_none();
-        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, touch, holds_up })
+        paced.then_some(Self { max_sag, base, dt_secs, stiffness, share, holds_up })
     }
 
     /// Substeps with which what is loaded by `load` (N/m_eff·dt, m/s) sags by the bound.

@@ -219,12 +219,14 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
 
 #[cfg(test)]
 mod tests {
+    use lamina2d::record::STATISTICS;
+
     use super::*;
 
     #[test]
     fn long_curves_keep_their_peaks() {
         let row = |k: u64| {
-            let mut row = StepRow { step: k, hash: 0, values: [0.0; 21] };
+            let mut row = StepRow { step: k, hash: 0, values: [0.0; STATISTICS.len()] };
             row.values[0] = k as f64;
             row.values[19] = if k == 54_321 { 9.0 } else { (k % 7) as f64 * 0.1 };
             row
