@@ -25,12 +25,13 @@ mod outline;
 mod polygons;
 mod put;
 mod spec;
+mod turn;
 
 use std::ops::Range;
 
 use crate::column::Column;
 use crate::each::Each as _;
-use crate::lanes::{ROW, Real};
+use crate::lanes::Real;
 use crate::shape::Shape;
 use crate::vec2::Rot;
 
@@ -74,17 +75,6 @@ struct Filter {
     category: u32,
     collides_with: u32,
     dynamic: bool,
-}
-
-/// A hull's rows turned by a rotation.
-#[inline(always)]
-fn turned<R: Real>(body: &HullRows<R>, c: R, s: R) -> HullRows<R> {
-    // Fixed-size rows, built whole: the compiler turns each into vectors of the target's width.
-    let turn = |x: &[R; ROW], y: &[R; ROW]| -> [[R; ROW]; 2] {
-        [crate::each::indexed(|k| c * x[k] - s * y[k]), crate::each::indexed(|k| s * x[k] + c * y[k])]
-    };
-    let ([x, y], [nx, ny]) = (turn(&body[0], &body[1]), turn(&body[2], &body[3]));
-    [x, y, nx, ny]
 }
 
 /// All bodies of a world.
@@ -140,6 +130,7 @@ pub struct Bodies<R: Real> {
     inserted: usize,
     live: usize,
     revision: u64,
+    pushes: u64,
     removals: u64,
 }
 
@@ -183,6 +174,7 @@ impl<R: Real> Bodies<R> {
             inserted: 0,
             live: 0,
             revision: 0,
+            pushes: 0,
             removals: 0,
         };
         bodies.grow();
@@ -201,9 +193,13 @@ impl<R: Real> Bodies<R> {
     pub fn live(&self) -> usize {
         self.live
     }
-    /// Grows whenever a body is inserted, removed, put elsewhere or given another mass or force.
+    /// Grows whenever a body is inserted, removed, put elsewhere or given another mass, and with the first force of a body.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+    /// Grows whenever a body is given another force.
+    pub fn pushes(&self) -> u64 {
+        self.pushes
     }
     /// Bodies ever removed: while it stays, a slot means the same body.
     pub fn removals(&self) -> u64 {
@@ -381,26 +377,6 @@ impl<R: Real> Bodies<R> {
             let mut drives = std::mem::take(&mut self.drives);
             drives.apply(self, dt_secs);
             self.drives = drives;
-        }
-    }
-
-    /// Turns the vertices and normals of all polygons into world axes.
-    pub fn refresh_polygons(&mut self) {
-        let Polygons { body, world, owner, .. } = &mut self.polygons;
-        let (cs, ss) = (self.c.padded(), self.s.padded());
-        for ((body, world), &owner) in body.iter().zip(world).zip(&*owner) {
-            *world = turned(body, cs[owner as usize], ss[owner as usize]);
-        }
-    }
-
-    /// Like [`Bodies::refresh_polygons`], for the bodies in some slots.
-    pub fn refresh_polygons_in(&mut self, slots: &[u32]) {
-        for slot in slots.iter().map(|&slot| slot as usize) {
-            if self.form[slot] == Form::Polygon {
-                for at in self.shapes(slot) {
-                    self.polygons.world[at] = turned(&self.polygons.body[at], self.c[slot], self.s[slot]);
-                }
-            }
         }
     }
 }

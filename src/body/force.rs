@@ -25,7 +25,8 @@ impl<R: Real> Bodies<R> {
         Ok(())
     }
 
-    /// Sets the constant force (N) and torque (N·m) on a body.
+    /// Sets the constant force (N) and torque (N·m) on a body. May be done in every step: nothing is looked over for it but what
+    /// stands on what.
     ///
     /// # Errors
     /// An id whose body is gone, a value that is not finite.
@@ -36,8 +37,11 @@ impl<R: Real> Bodies<R> {
                 return Err(BodyError::NonFiniteInSlot { slot: id.slot, field, value });
             }
         }
+        let had_none = self.force.is_none();
         self.write_force(slot, [force[0], force[1], torque]);
-        self.revision += 1;
+        self.pushes += 1;
+        // Forces of bodies are a field from now on.
+        self.revision += u64::from(had_none && self.force.is_some());
         Ok(())
     }
 

@@ -13,7 +13,7 @@
 //! * **C** = (1 − α)·s + Δs for an overlap s from before the substep, s + Δs for a gap: the overlap itself is taken
 //!   away by the last descent (α = 0), after velocities are known, so that it gives none.
 //! * **Without units.** k is in shares of m/h², m the effective mass at the contact's first point, h the substep: it
-//!   begins at [`START`] and grows by [`GROWTH`] per median radius of |C|. m/h² is the body's own stiffness in the system
+//!   begins at [`START`] and grows by [`GROWTH`] per length of the pair of |C|. m/h² is the body's own stiffness in the system
 //!   above, so that START says how much more a contact counts than inertia, at every step, mass and size.
 //! * **Warm start.** λ ← αγλ, k ← max(γk, START), kept with the pair: λ as an impulse, k in the fourth slot.
 //! * **Velocities** are x/h, and y is h times the predicted velocity: first order, whatever the scheme. With the
@@ -62,7 +62,7 @@ const KEEP: f64 = 0.99;
 const FADE: f64 = 0.99;
 /// Least stiffness, in effective masses per h².
 const START: f64 = 10.0;
-/// Growth of the stiffness, in effective masses per h² and per median radius of |C|.
+/// Growth of the stiffness, in effective masses per h² and per length of the pair of |C|.
 const GROWTH: f64 = 100.0;
 /// Greatest stiffness, in effective masses per h².
 const MOST: f64 = 1e6;

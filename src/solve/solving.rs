@@ -143,6 +143,11 @@ impl<L: Lanes> Solving<L> {
         }
     }
 
+    /// Other forces act: what stands under them may need other substeps.
+    pub fn look_at_loads(&mut self) {
+        self.substep_groups.freshen();
+    }
+
     /// After bodies have come: notes how deep the deepest of the pairs last looked at is; later ones are looked at as a
     /// step ends. `deepest`: over its pair's length, negative.
     pub fn note_depth(&mut self, deepest: impl FnOnce() -> f64) {

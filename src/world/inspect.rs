@@ -25,6 +25,12 @@ impl<L: Lanes> World<L> {
             self.made.forget_poses();
             self.motion.assume_fast_bodies();
         }
+        if self.made.pushes != self.bodies.pushes() {
+            self.made.pushes = self.bodies.pushes();
+            self.log.watchdog.forget();
+            self.motion.assume_fast_bodies();
+            self.solving.look_at_loads();
+        }
         if self.made.bodies == Some(seen) {
             return;
         }

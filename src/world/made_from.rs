@@ -7,6 +7,8 @@ pub(super) struct MadeFrom {
     pub(super) bodies: Option<(u64, u64)>,
     /// Of the joints last looked over.
     pub(super) joints: u64,
+    /// Of the forces on bodies last looked at.
+    pub(super) pushes: u64,
     /// The list of pairs that the narrow phase has.
     list: Option<u64>,
     /// Who was awake when runs were last laid out, and when pairs were last sorted by it.
@@ -19,7 +21,7 @@ pub(super) struct MadeFrom {
 impl Default for MadeFrom {
     fn default() -> Self {
         // Nobody sleeps, and there are no pairs to sort.
-        Self { bodies: None, joints: 0, list: None, awake: 0, sorted: Some(0), own_poses: false }
+        Self { bodies: None, joints: 0, pushes: 0, list: None, awake: 0, sorted: Some(0), own_poses: false }
     }
 }
 

@@ -40,7 +40,7 @@ pub struct Snapshot {
     pub counts: Counts,
     /// Stage times, summed since they were last set to zero.
     pub times: StageTimes,
-    /// Changes of which bodies there are, of their masses and forces, see [`crate::body::Bodies::revision`], and of
+    /// Changes of which bodies there are, of their masses and forces, see [`crate::body::Bodies::revision`] and [`crate::body::Bodies::pushes`], and of
     /// the fields.
     pub revision: [u64; 3],
 }
@@ -53,7 +53,7 @@ impl<L: Lanes> World<L> {
         into.step = self.log.steps;
         into.counts = self.log.counts;
         into.times = *self.log.stopwatch.times();
-        into.revision = [bodies.revision(), bodies.removals(), self.laws.revision];
+        into.revision = [bodies.revision() + bodies.pushes(), bodies.removals(), self.laws.revision];
         into.take_bodies(bodies, self.islands.asleep());
         into.pairs.clear();
         into.contacts.clear();

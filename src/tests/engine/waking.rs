@@ -7,7 +7,7 @@ use lamina2d::internals::{Islands, Pull};
 use lamina2d::joint::{Distance, JointKind, JointSpec};
 use lamina2d::lanes::f32s;
 use lamina2d::scene::{BodySpec, ShapeSpec};
-use lamina2d::settings::{Settings, Solver};
+use lamina2d::settings::{Settings, Skip, Solver};
 use lamina2d::world::World;
 
 use crate::shared_sleep::{
@@ -53,6 +53,45 @@ fn what_rested_on_a_removed_box_wakes_and_falls() {
     step(&mut world, 30);
     assert_eq!(world.sleeping(), 0);
     assert!(world.bodies().y[other] < 0.0, "without a floor all falls");
+}
+
+/// A body that is driven by a force set anew in each step moves by it; what stands beside it keeps its manifolds and its bits.
+#[test]
+fn a_force_in_each_step_leaves_what_it_does_not_act_on() {
+    let settings = Settings::default();
+    let mut scene = named("pyramid/5");
+    scene
+        .bodies
+        .push(BodySpec::new(ShapeSpec::Circle(0.5), [500.0, 100.0]).mass(2.0).moving([0.0, 9.81], 0.0));
+    let mut world = world_of::<f32s::X8>(&scene, settings);
+    step(&mut world, 600);
+    let (slots, ball) = (world.bodies().len() - 1, id(&world, world.bodies().len() - 1));
+    let stands: Vec<_> = (1..slots).map(|slot| pose(&world, slot).map(f64::from_bits)).collect();
+    let fallen = world.bodies().vy[slots];
+    world.set_force(ball, [1.0, 0.0], 0.0).expect("lives");
+    step(&mut world, 1);
+    let mut speed = 0.5 * DT_SECS;
+    for k in 0..60 {
+        let force = 1.0 + f64::from(k % 7);
+        world.set_force(ball, [force, 2.0 * 9.81], 0.0).expect("lives");
+        step(&mut world, 1);
+        speed += force / 2.0 * DT_SECS;
+        let counts = world.counts();
+        assert_eq!(counts.skipped[Skip::ManifoldReuse as usize], counts.pairs as u64, "step {k}");
+    }
+    let bodies = world.bodies();
+    assert!(
+        (f64::from(bodies.vx[slots]) - speed).abs() < 1e-5 * speed,
+        "{} m/s, not {speed}",
+        bodies.vx[slots]
+    );
+    let falls = f64::from(bodies.vy[slots] - fallen);
+    assert!((falls + 9.81 * DT_SECS).abs() < 1e-4, "held against gravity in all steps but one: {falls} m/s");
+    for (slot, stood) in (1..slots).zip(&stands) {
+        let now = pose(&world, slot).map(f64::from_bits);
+        let moved = now.iter().zip(stood).map(|(now, then)| (now - then).abs()).fold(0.0, f64::max);
+        assert!(moved < 1e-5, "slot {slot} moved by {moved}");
+    }
 }
 
 #[test]
