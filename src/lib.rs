@@ -112,6 +112,9 @@
 //!   instruction the compiler makes of it at width 1. Positions are integrated so.
 //! - `array::from_fn` inside a gather, or a closure called four times in one: left as calls by the compiler, 12 and 7 % of a step.
 //! - Slots of a batch handed to a pass by a function instead of copied in it: passes 15 to 20 % slower.
+//! - Threads by shares of a stage (rayon's `join`; contacts by regions, each worker with rows of its own that every pass copies in
+//!   and takes back): the same bits for 1 to 16, and no faster on two cores. 25 wake-ups a step, or a core that spins; rows
+//!   cross between cores twice a pass, which takes half as long as the pass. Rows must stay with their worker.
 //! - `zip` over slots in a gather of joints: left as calls, twice the instructions of placing them; a loop over `WIDTH` a third fewer
 //!   than the closure there was.
 //! - Columns' slices taken inside a loop over lanes that also stores: looked up again after every store, 6 to 12 % more
