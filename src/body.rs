@@ -38,7 +38,7 @@ use crate::vec2::Rot;
 pub use check::BodyError;
 use check::Checker;
 use drive::{Drive, Drives};
-pub(crate) use fine::fine_difference;
+pub(crate) use fine::{fine_difference, move_finely};
 pub(crate) use outline::Placed;
 pub use polygons::{HullRows, Polygons};
 pub use spec::{BodyKind, BodySpec, ShapeSpec};

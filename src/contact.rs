@@ -18,7 +18,9 @@ mod table;
 use crate::lanes::{Lanes, ROW, Real};
 use table::PairTable;
 
-pub use places::{Places, Recoded};
+pub use places::Places;
+
+use places::Recoded;
 pub use row::{CONTACT_COLUMNS, ContactRow, GapsAndImpulses};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face
@@ -142,10 +144,11 @@ pub struct Manifolds<R: Real> {
     bucket_of: Vec<(u8, bool)>,
     /// Places of the pairs that touch, ascending.
     touching: Vec<u32>,
-    /// The pairs that touch, or how many points they have, may differ from when `touching` was made.
-    changed: bool,
-    /// Manifolds with other codes than when these were last taken.
-    recoded: Vec<Changed>,
+    /// Manifolds with other codes than when these were last taken; whether pairs that touch, or how many points they have, may
+    /// differ from when `touching` was made.
+    recoded: Recoded,
+    /// The same of what workers beside the first have found, empty between their calls.
+    beside: Vec<Recoded>,
     /// Homes of pairs that left the list.
     gone: Vec<Home>,
 }
@@ -158,8 +161,8 @@ impl<R: Real> Default for Manifolds<R> {
             rest: rest::SleepingContacts::default(),
             bucket_of: Vec::new(),
             touching: Vec::new(),
-            changed: false,
-            recoded: Vec::new(),
+            recoded: Recoded::default(),
+            beside: Vec::new(),
             gone: Vec::new(),
         }
     }
@@ -192,7 +195,7 @@ impl<R: Real> Manifolds<R> {
         table.ends = next;
         table.close();
         self.take_over();
-        self.changed = true;
+        self.recoded.changed = true;
     }
 
     fn take_over(&mut self) {
@@ -234,7 +237,7 @@ impl<R: Real> Manifolds<R> {
     /// Manifolds with other points or features than when these were last taken.
     pub fn take_recoded(&mut self, into: &mut Vec<Changed>) {
         into.clear();
-        into.append(&mut self.recoded);
+        into.append(&mut self.recoded.manifolds);
     }
 
     /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
@@ -243,9 +246,9 @@ impl<R: Real> Manifolds<R> {
         self.now.close();
         self.rest.forget();
         self.touching.clear();
-        self.recoded.clear();
+        self.recoded.manifolds.clear();
         self.gone.clear();
-        self.changed = true;
+        self.recoded.changed = true;
     }
 
     /// Candidate pairs.
@@ -330,7 +333,7 @@ impl<R: Real> Manifolds<R> {
 
     /// Brings the list of touching pairs up to date. Says whether it, or a number of points, changed.
     pub fn refresh(&mut self) -> bool {
-        let changed = std::mem::take(&mut self.changed);
+        let changed = std::mem::take(&mut self.recoded.changed);
         if changed {
             let one = R::from_f64(65536.0);
             let codes = &self.now.code.as_slice()[..self.now.ends[5]];

@@ -11,6 +11,10 @@ use crate::settings::{Broad, Settings};
 use crate::simulation::Simulation;
 use crate::world::World;
 
+pub use crate::workers::Workers;
+
+use crate::workers::Parts;
+
 pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
 pub use crate::column::BLOCK;
 pub use crate::integrate::{advance, fly, predict};
@@ -78,7 +82,7 @@ pub fn find_at(
     method: Broad,
     margin: f32,
 ) -> BroadCounts {
-    at_width!(lanes, broad.find(bodies, method, margin.into(), 0.0, false))
+    at_width!(lanes, broad.find(&Workers::ALONE, bodies, method, margin.into(), 0.0, false))
 }
 
 /// [`Narrow::run`] with a margin, metres.
@@ -88,7 +92,16 @@ pub fn run_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>, pair
 
 /// [`Narrow::collide`] without margin.
 pub fn collide_at(lanes: usize, narrow: &mut Narrow<f32>, bodies: &Bodies<f32>) {
-    at_width!(lanes, narrow.collide(bodies, 0.0.into(), 0.0, Stride { secs: 0.0, fallen: [0.0; 2] }));
+    at_width!(
+        lanes,
+        narrow.collide(
+            (&Workers::ALONE, &Parts::default()),
+            bodies,
+            0.0.into(),
+            0.0,
+            Stride { secs: 0.0, fallen: [0.0; 2] }
+        )
+    );
 }
 
 /// [`fly`] without noting fast bodies.

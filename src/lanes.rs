@@ -206,7 +206,7 @@ pub trait Lanes:
     /// Like [`Lanes::gather_rows`], for rows of four.
     fn gather_fours(fours: &[[Self::Elem; 4]], index: &[u32]) -> [Self; 4];
     /// The inverse of [`Lanes::gather_fours`]: `to[index[lane]][k] = from[k][lane]`; where lanes name the same
-    /// row, the last one's stays. Panics if an index is out of range.
+    /// row, the first one's stays. Panics if an index is out of range.
     fn scatter_fours(from: [Self; 4], to: &mut [[Self::Elem; 4]], index: &[u32]);
 
     /// 0 in every lane.

@@ -28,7 +28,7 @@
 //! | [`broad`], [`narrow`], [`integrate`], [`solve`], [`continuous`], [`island`] | the stages, and which bodies are at rest together and sleep; none imports another's work, only what it leaves behind |
 //! | [`contact`], [`motion`], [`partition`], [`seams`] | manifolds and carried impulses; the rows and displacements of a step in progress; who belongs together; what of static outlines their neighbours cover |
 //! | [`body`], [`joint`], [`force`], [`event`] | columns of bodies and what they are written down as; joints; fields; what is done between steps |
-//! | [`shape`], [`settings`] | shapes and their masses; what a run may choose |
+//! | [`shape`], [`settings`], [`workers`] | shapes and their masses; what a run may choose; threads, and what they share out |
 //! | [`mod@column`], [`vec2`], [`pair`], [`clock`] | aligned columns; vectors and rotations; pairs of numbers in files; fixed steps |
 //! | [`each`], [`lanes`] | arrays mapped by loops; lanes, the only room that names `wide` |
 //!
@@ -65,7 +65,8 @@
 //! 4. Enums are matched once per stage, bucket or block, never per lane value. Width 1 is the scalar version.
 //! 5. After warm-up a step allocates only where a count reaches a new maximum.
 //! 6. A kernel answers for each lane as if it were alone: which pairs share a batch changes nothing.
-//! 7. `unsafe` is forbidden; the library does no I/O but for reading a scene file it is asked for.
+//! 7. `unsafe` is forbidden; the library does no I/O but for reading a scene file it is asked for. What threads cannot do without
+//!    is in `lamina-team` (`src/team`), whose head says why it holds and how it is checked.
 //! 8. Bad input is refused where it enters, naming body, field and value; a state that turns non-finite
 //!    stops the run with step, body and stage; so does, where a bound is set, a body that runs away or energy from nothing.
 //!
@@ -77,7 +78,7 @@
 //! Instructions per step of 150 settled polygons (270 contacts), `soft`, 4 substeps, by callgrind, of a pile that is left
 //! alone: steps 600 to 620 of `lamina run polygons/150` (181,414 at commit 61f47dc, 181,737 in steps 1800 to 1820; 187,997 and
 //! 184,789 with 276 contacts since tolerances are of pairs, as it piles up otherwise). The gate's scene of the same name counts
-//! 311,512 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
+//! 309,691 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
 //! again, and finds and prepares its contacts in every step.
 //!
 //! | lever | state |
@@ -90,6 +91,7 @@
 //! | narrow and broad phase in lanes | kept; manifolds are coded as numbers, so that a batch is written without a branch per lane |
 //! | contacts keep their lane | kept: one that comes or goes touches its colour alone. Against cutting all batches anew and handing gaps and impulses back to pairs: prepare of spinner/2000 350 → 238 µs, tumbler/2000 383 → 267, pyramid/100 965 → 752, polygons/10000 falling 2690 → 2510; narrow, which now notes who comes and goes, takes 1 to 5 % more |
 //! | cache blocking | lost: polygons/10000 in the order of their rows and shuffled at random solve alike (1.63, 1.69 ms against 1.13, 1.66): the rows of 10,000 bodies are 160 kB, any order of them stays in L2 while constraints stream by |
+//! | threads | kept, as many as are asked for ([`workers`]): the same bits; pyramid/100 with two 0.75 to 0.9 of the time with one, polygons/10000 falling 0.95 to 1.0: half of its step (lists, sorting, bounces, continuous collision) is still one thread's, and reads from the other core what that wrote |
 //! | substeps per island | kept: a slender stack gets those it stands with unasked (columns/40 12, where it falls with 4 for all), every island its own by a bound on the sag |
 //! | 16 lanes | same bits; slower than 8 without AVX-512 in the target |
 //! | lazy work | free flight, closed forms, absent friction and bounces: see the report's table of skips |
@@ -112,9 +114,10 @@
 //!   instruction the compiler makes of it at width 1. Positions are integrated so.
 //! - `array::from_fn` inside a gather, or a closure called four times in one: left as calls by the compiler, 12 and 7 % of a step.
 //! - Slots of a batch handed to a pass by a function instead of copied in it: passes 15 to 20 % slower.
-//! - Threads by shares of a stage (rayon's `join`; contacts by regions, each worker with rows of its own that every pass copies in
-//!   and takes back): the same bits for 1 to 16, and no faster on two cores. 25 wake-ups a step, or a core that spins; rows
-//!   cross between cores twice a pass, which takes half as long as the pass. Rows must stay with their worker.
+//! - Threads by rayon's `join`, each worker with rows of its own that every pass copies in and takes back: no faster on two cores. 25
+//!   wake-ups a step, or a core that spins; rows cross between cores twice a pass. Rows must stay with their worker.
+//! - Slots of a batch counted from a part's first by a subtraction in each visit: 33 instructions a batch, 2.7 % of a push and 8.6 %
+//!   of a relaxation. They are counted so in the lists, and passes are handed rows from there on.
 //! - `zip` over slots in a gather of joints: left as calls, twice the instructions of placing them; a loop over `WIDTH` a third fewer
 //!   than the closure there was.
 //! - Columns' slices taken inside a loop over lanes that also stores: looked up again after every store, 6 to 12 % more
@@ -156,6 +159,7 @@ pub mod shape;
 pub mod simulation;
 mod solve;
 pub mod vec2;
+mod workers;
 pub mod world;
 
 #[doc(hidden)]

@@ -1,7 +1,8 @@
-//! What a run may choose: precision, lanes, integrator, solver, broad phase, step, skips, sleep.
+//! What a run may choose: precision, lanes, threads, integrator, solver, broad phase, step, skips, sleep.
 
 mod error;
 mod skips;
+mod threads;
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +10,7 @@ use crate::lanes::Real;
 
 pub use error::SettingsError;
 pub use skips::Skips;
+pub use threads::{MOST_THREADS, Threads};
 
 /// Stiffness: hz·h, the contact's frequency as a share of the substep rate.
 ///
@@ -193,6 +195,9 @@ pub struct Settings {
     pub lanes: usize,
     /// The scalar.
     pub precision: Precision,
+    /// How many threads a step is done by; left out where it is one. Never changes a bit of a result.
+    #[serde(default, skip_serializing_if = "Threads::is_one")]
+    pub threads: Threads,
     /// Work left out where a scene does not need it.
     #[serde(rename = "skip")]
     pub skips: Skips,
@@ -241,6 +246,7 @@ impl Default for Settings {
             broad: Broad::Auto,
             lanes: 8,
             precision: Precision::F32,
+            threads: Threads::ONE,
             skips: Skips::ALL,
             continuous: true,
             sleep: false,
@@ -301,6 +307,7 @@ impl Settings {
         if dt_secs < least {
             return Err(SettingsError::ShortDt { precision: self.precision, given: self.dt_secs, least });
         }
+        self.threads.check()?;
         if !(1..=1000).contains(&self.substeps) {
             return Err(SettingsError::Substeps(self.substeps));
         }

@@ -26,6 +26,8 @@ use crate::settings::{Settings, Skip, StiffFields};
 use crate::solve::substep_group::Goal;
 use crate::solve::{self, SceneNeeds, SolverContext, Solving};
 
+use crate::workers::Workers;
+
 use made_from::MadeFrom;
 use watchdog::Watchdog;
 
@@ -85,6 +87,7 @@ pub struct World<L: Lanes> {
     /// Who sleeps; left alone without [`Settings::sleep`].
     islands: Islands<L::Elem>,
     made: MadeFrom,
+    workers: Workers,
     log: Log,
 }
 
@@ -116,6 +119,8 @@ impl<L: Lanes> World<L> {
             return Ok(());
         }
         self.log.stopwatch.begin(self.bodies.live());
+        self.workers.for_bodies(self.settings.threads, self.bodies.live());
+        let workers = self.workers.clone();
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
         let needs = self.laws.needs.needed(skips);
 
@@ -132,12 +137,13 @@ impl<L: Lanes> World<L> {
             skips,
             moving: solve::pushes(solver),
             carries: solve::carries_impulses(solver),
+            workers: &workers,
         };
         let stiffness = self.settings.contact_stiffness();
         let context = SolverContext { solver, needs, dt_secs, stiffness, plan: &plan };
         let goal = Goal::of(&context, &self.settings, &self.laws.forces);
         let goal = goal.map(|goal| (goal, self.solving.look(&goal, (&self.bodies, &fields), &self.joints)));
-        let seen = self.find_contacts(needs, rounded);
+        let seen = self.find_contacts(&workers, needs, rounded);
         let none_touch = self.narrow.manifolds.is_empty() && self.islands.is_empty();
         let may_fly = none_touch && self.joints.is_empty() && skips.has(Skip::FreeFlight);
         let exact = self.settings.stiff_fields != Some(StiffFields::Scheme);
@@ -153,7 +159,7 @@ impl<L: Lanes> World<L> {
         } else {
             let moved = self.move_in_contact(&context, goal, &seen);
             let fast = self.continuous.begin(self.settings.continuous, self.broad.pairs().len());
-            integrate::finish::<L>(&mut self.bodies, &mut self.motion, fast, context.speeds());
+            integrate::finish::<L>(&workers, &mut self.bodies, &mut self.motion, fast, context.speeds());
             moved
         };
         self.laws.fields = fields;
@@ -193,7 +199,7 @@ impl<L: Lanes> World<L> {
     }
 
     /// Brings pairs and their manifolds up to date, as far as something has moved.
-    fn find_contacts(&mut self, needs: SceneNeeds, dt_secs: L::Elem) -> Seen {
+    fn find_contacts(&mut self, workers: &Workers, needs: SceneNeeds, dt_secs: L::Elem) -> Seen {
         let Settings { solver, skips, broad, .. } = self.settings;
         let margin = needs.margin(solver);
         let near = Near { metres: L::Elem::ZERO, share: margin };
@@ -204,7 +210,7 @@ impl<L: Lanes> World<L> {
         } else {
             L::Elem::ZERO
         };
-        let found = self.broad.find::<L>(&self.bodies, broad, reach, ahead_secs, keep);
+        let found = self.broad.find::<L>(workers, &self.bodies, broad, reach, ahead_secs, keep);
         self.log.stopwatch.lap(Stage::Broad);
 
         let reuse = self.made.poses_are_its_own() && skips.has(Skip::ManifoldReuse);
@@ -221,12 +227,12 @@ impl<L: Lanes> World<L> {
             seen.looked_at = self.narrow.choose(self.bodies.len(), has_moved);
             match self.narrow.wanted() {
                 Some(slots) => self.bodies.refresh_polygons_in(slots),
-                None => self.bodies.refresh_polygons(),
+                None => self.bodies.share_polygons((workers, &self.motion.parts)),
             }
             let [gx, gy] = self.laws.forces.gravity.unwrap_or_default().each(L::Elem::from_f64);
             let fallen = [gx, gy].each(|pull| pull * dt_secs * dt_secs);
             let stride = Stride { secs: dt_secs, fallen };
-            self.narrow.collide::<L>(&self.bodies, near, ahead_secs, stride);
+            self.narrow.collide::<L>((workers, &self.motion.parts), &self.bodies, near, ahead_secs, stride);
             self.solving.follow(&mut self.narrow.manifolds, &self.motion);
             seen.changed = self.narrow.manifolds.refresh();
             if seen.changed {
@@ -251,11 +257,18 @@ impl<L: Lanes> World<L> {
         let repaced = goal.is_some_and(|goal| {
             solving.decide_substep_groups(goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
+        let recut = (repaced || !seen.still)
+            && solving.divide(context.plan.workers.count(), bodies, &mut self.narrow.manifolds, motion);
         if repaced || !seen.still {
             // Where nothing has moved no pair was looked at: the lists are those of an earlier step.
             let (manifolds, looked_at) = self.narrow.found();
             let looked_at = looked_at.filter(|_| !seen.still);
-            solving.prepare(bodies, (manifolds, looked_at), seen.changed || repaced, motion);
+            solving.prepare(
+                bodies,
+                (manifolds, looked_at),
+                seen.changed || repaced || recut,
+                (context.plan.workers, motion),
+            );
             solving.note_depth(|| self.narrow.deepest(bodies));
         }
         solving.prepare_joints(context, bodies, &self.joints, awake);

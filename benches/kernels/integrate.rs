@@ -2,7 +2,7 @@
 
 use lamina2d::body::Bodies;
 use lamina2d::force::{Field, Forces};
-use lamina2d::internals::{self, Plan};
+use lamina2d::internals::{self, Plan, Workers};
 use lamina2d::lanes::{Lanes, f32s};
 use lamina2d::measure::state_hash;
 use lamina2d::settings::{Integrator, Skip, Skips};
@@ -52,6 +52,7 @@ impl Stage for Flight {
                 skips,
                 moving: false,
                 carries: false,
+                workers: &Workers::ALONE,
             },
             bodies,
         );

@@ -4,7 +4,7 @@ use lamina2d::body::{Bodies, Form};
 use lamina2d::contact::Manifolds;
 use lamina2d::force::{Field, Forces};
 use lamina2d::internals::{
-    BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, SolverContext, Solving, find_at, run_at,
+    BroadPhase, HERTZ_TIMES_SUBSTEP, Motion, Narrow, Plan, SolverContext, Solving, Workers, find_at, run_at,
 };
 use lamina2d::joint::Joints;
 use lamina2d::lanes::Lanes;
@@ -59,7 +59,7 @@ impl Pile {
     /// Constraints of all contacts, and the manifolds that know where they are.
     pub(super) fn solving<L: Lanes<Elem = f32>>(&self) -> (Solving<L>, Manifolds<f32>) {
         let (mut solving, mut narrow) = (Solving::default(), self.narrow.clone());
-        solving.prepare(&self.bodies, narrow.found(), true, &self.motion());
+        solving.prepare(&self.bodies, narrow.found(), true, (&Workers::ALONE, &self.motion()));
         (solving, narrow.manifolds)
     }
 
@@ -74,6 +74,7 @@ impl Pile {
             skips: Skips::NONE,
             moving: lamina2d::internals::pushes(solver),
             carries: lamina2d::internals::carries_impulses(solver),
+            workers: &Workers::ALONE,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Contacts become constraints: colours, batches, masses and levers.
 
 use lamina2d::contact::Home;
-use lamina2d::internals::{Motion, Narrow, Solving};
+use lamina2d::internals::{Motion, Narrow, Solving, Workers};
 use lamina2d::lanes::Lanes;
 use lamina2d::scene::BodyKind;
 
@@ -30,7 +30,7 @@ impl Stage for Prepare {
         // As if they had come just now, each time.
         solving.forget();
         narrow.manifolds.homes_mut().fill(Home::NONE);
-        solving.prepare(&self.pile.bodies, narrow.found(), true, &self.motion);
+        solving.prepare(&self.pile.bodies, narrow.found(), true, (&Workers::ALONE, &self.motion));
     }
 
     fn answer<L: Lanes<Elem = f32>>(&self, (solving, _): &Self::Memory<L>) -> Answer {

@@ -75,19 +75,29 @@ impl<R: Real> Bodies<R> {
     /// Moves the bodies of one lane value, where positions are finer than their columns.
     #[inline(always)]
     pub(crate) fn move_lanes<L: Lanes<Elem = R>>(&mut self, at: usize, moved: [L; 2]) {
-        let columns = [&mut self.x, &mut self.y];
         let Some(rows) = &mut self.fine else { return };
-        let rows = &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
-        let mut rest = L::gather_fours(rows, &crate::lanes::IN_ORDER);
-        for (k, column) in columns.into_iter().enumerate() {
-            let (old, add) = (column.lanes::<L>()[at], rest[k] + moved[k]);
-            let sum = old + add;
-            let taken = sum - old;
-            rest[k] = (old - (sum - taken)) + (add - taken);
-            column.lanes_mut::<L>()[at] = sum;
-        }
-        L::scatter_fours(rest, rows, &crate::lanes::IN_ORDER);
+        move_finely([self.x.lanes_mut(), self.y.lanes_mut()], rows.fours_mut(), at, moved);
     }
+}
+
+/// Moves the bodies of one lane value, whose columns x and y and what they are beyond these are here.
+#[inline(always)]
+pub(crate) fn move_finely<L: Lanes>(
+    columns: [&mut [L]; 2],
+    rows: &mut [[L::Elem; 4]],
+    at: usize,
+    moved: [L; 2],
+) {
+    let rows = &mut rows[at * L::WIDTH..(at + 1) * L::WIDTH];
+    let mut rest = L::gather_fours(rows, &crate::lanes::IN_ORDER);
+    for (k, column) in columns.into_iter().enumerate() {
+        let (old, add) = (column[at], rest[k] + moved[k]);
+        let sum = old + add;
+        let taken = sum - old;
+        rest[k] = (old - (sum - taken)) + (add - taken);
+        column[at] = sum;
+    }
+    L::scatter_fours(rest, rows, &crate::lanes::IN_ORDER);
 }
 
 /// From body A to body B, in lanes, where columns and remainders are these.

@@ -3,6 +3,7 @@
 use super::polygons::HullRows;
 use super::{Bodies, Form, Polygons};
 use crate::lanes::{ROW, Real};
+use crate::workers::{Parts, Workers, share_rows};
 
 /// A hull's rows turned by a rotation.
 #[inline(always)]
@@ -18,11 +19,20 @@ fn turned<R: Real>(body: &HullRows<R>, c: R, s: R) -> HullRows<R> {
 impl<R: Real> Bodies<R> {
     /// Turns the vertices and normals of all polygons into world axes.
     pub fn refresh_polygons(&mut self) {
+        self.share_polygons((&Workers::ALONE, &Parts::default()));
+    }
+
+    /// [`Bodies::refresh_polygons`] by several workers.
+    pub(crate) fn share_polygons(&mut self, (workers, parts): (&Workers, &Parts)) {
         let Polygons { body, world, owner, .. } = &mut self.polygons;
         let (cs, ss) = (self.c.padded(), self.s.padded());
-        for ((body, world), &owner) in body.iter().zip(world).zip(&*owner) {
-            *world = turned(body, cs[owner as usize], ss[owner as usize]);
-        }
+        // Owners mostly ascend; where they do not, another worker turns them.
+        let from = parts.map(|slot| owner.partition_point(|&owner| (owner as usize) < slot));
+        share_rows((workers, &from), world, |first, world| {
+            for ((body, world), &owner) in body[first..].iter().zip(world).zip(&owner[first..]) {
+                *world = turned(body, cs[owner as usize], ss[owner as usize]);
+            }
+        });
     }
 
     /// Like [`Bodies::refresh_polygons`], for the bodies in some slots.

@@ -8,6 +8,7 @@
 
 use super::{Circles, ordered};
 use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
+use crate::workers::Workers;
 
 /// Cells per circle at most; a scene spread wider gets larger cells.
 const CELLS_PER_CIRCLE: f64 = 8.0;
@@ -18,6 +19,9 @@ const MAX_LEVELS: usize = 40;
 const CROWDED: usize = 16;
 /// Lists for which crowded cells are not tried again.
 const CROWDED_LISTS: u32 = 64;
+
+/// Circles of a share from which on it is worth a thread: some 20 µs.
+const WORTH: usize = 512;
 
 /// The most cells a level of this many circles is laid out in.
 fn most_cells(circles: usize) -> f64 {
@@ -62,11 +66,13 @@ pub(super) struct Grid<R: Real> {
     levels: Vec<Level<R>>,
     /// Lists that are to be found otherwise.
     pause: u32,
+    /// Pairs that workers beside the first have found.
+    beside: Vec<Vec<[u32; 2]>>,
 }
 
 impl<R: Real> Default for Grid<R> {
     fn default() -> Self {
-        Self { levels: Vec::new(), pause: 0 }
+        Self { levels: Vec::new(), pause: 0, beside: Vec::new() }
     }
 }
 
@@ -81,6 +87,7 @@ impl<R: Real> Grid<R> {
     /// Says whether it has found them: it `gives_way` where cells are crowded.
     pub(super) fn find<L: Lanes<Elem = R>>(
         &mut self,
+        workers: &Workers,
         circles: &Circles<R>,
         pairs: &mut Vec<[u32; 2]>,
         gives_way: bool,
@@ -99,7 +106,7 @@ impl<R: Real> Grid<R> {
             return false;
         }
         for (k, level) in self.levels.iter().enumerate() {
-            level.own_pairs::<L>(pairs);
+            level.share_own_pairs::<L>(workers, &mut self.beside, pairs);
             for coarser in &self.levels[k + 1..] {
                 level.pairs_with::<L>(coarser, pairs);
             }
@@ -208,8 +215,39 @@ impl<R: Real> Level<R> {
         cell(first)..cell(last + 1)
     }
 
-    fn own_pairs<L: Lanes<Elem = R>>(&self, pairs: &mut Vec<[u32; 2]>) {
-        for row in 0..self.rows {
+    /// The level's own pairs: rows of cells shared out, as many circles to each worker; what they have found is put behind each
+    /// other.
+    fn share_own_pairs<L: Lanes<Elem = R>>(
+        &self,
+        workers: &Workers,
+        beside: &mut Vec<Vec<[u32; 2]>>,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
+        let shares = workers.count().min(self.sorted.len() / WORTH).max(1);
+        let share = self.sorted.len().div_ceil(shares);
+        // Circles before a row.
+        let before = |row: i64| self.starts[(row * self.columns) as usize] as usize;
+        let cut = |number: usize| {
+            let mut row = 0;
+            while row < self.rows && (number == shares || before(row) < number * share) {
+                row += 1;
+            }
+            row
+        };
+        let find =
+            |number: usize, pairs: &mut Vec<_>| self.own_pairs::<L>(cut(number)..cut(number + 1), pairs);
+        if shares == 1 {
+            return find(0, pairs);
+        }
+        beside.resize_with(beside.len().max(shares), Vec::new);
+        workers.each(&mut beside[..shares], find);
+        for found in &mut beside[..shares] {
+            pairs.append(found);
+        }
+    }
+
+    fn own_pairs<L: Lanes<Elem = R>>(&self, rows: std::ops::Range<i64>, pairs: &mut Vec<[u32; 2]>) {
+        for row in rows {
             for column in 0..self.columns {
                 let own = self.run(row, column, column);
                 if own.is_empty() {

@@ -37,6 +37,7 @@ use crate::column::Column;
 use crate::lanes::{Lanes, Real};
 use crate::motion::Near;
 use crate::settings::Broad;
+use crate::workers::Workers;
 
 /// Up to this many bodies `auto` compares all with all.
 pub const BRUTE_LIMIT: usize = 400;
@@ -253,6 +254,7 @@ impl<R: Real> BroadPhase<R> {
     /// with `keep` a list may be found with a skin and serve for several steps.
     pub fn find<L: Lanes<Elem = R>>(
         &mut self,
+        workers: &Workers,
         bodies: &Bodies<R>,
         method: Broad,
         margin: Near<R>,
@@ -274,7 +276,7 @@ impl<R: Real> BroadPhase<R> {
         let awake = self.some_sleep.then_some(self.frozen.awake_slots());
         let largest = R::from_f64(self.long.largest_radius());
         self.reach.measure::<L>(bodies, (margin, largest), skin, ahead_secs, awake);
-        self.find_afresh::<L>(bodies, method, gives_way);
+        self.find_afresh::<L>(workers, bodies, method, gives_way);
         self.lists += 1;
         let candidates = self.pairs.len();
         self.keep_collidable(bodies);
@@ -284,7 +286,13 @@ impl<R: Real> BroadPhase<R> {
     }
 
     /// `gives_way`: the grid does, where its cells are crowded.
-    fn find_afresh<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>, method: Broad, gives_way: bool) {
+    fn find_afresh<L: Lanes<Elem = R>>(
+        &mut self,
+        workers: &Workers,
+        bodies: &Bodies<R>,
+        method: Broad,
+        gives_way: bool,
+    ) {
         self.pairs.clear();
         self.in_use = Some(method);
         if method == Broad::Off {
@@ -296,7 +304,9 @@ impl<R: Real> BroadPhase<R> {
                 brute::find::<L>(&self.circles, &mut self.pairs);
                 Broad::Brute
             }
-            Broad::Grid if self.grid.find::<L>(&self.circles, &mut self.pairs, gives_way) => Broad::Grid,
+            Broad::Grid if self.grid.find::<L>(workers, &self.circles, &mut self.pairs, gives_way) => {
+                Broad::Grid
+            }
             _ => {
                 self.sweep.find::<L>(&self.circles, &mut self.pairs);
                 Broad::Sweep

@@ -2,52 +2,75 @@
 
 use super::{Changed, Code, Manifolds};
 use crate::lanes::{IN_ORDER, LaneMask, Lanes, ROW, Real, set_lanes};
+use crate::workers::{PerPart, take};
 
 /// Manifolds with other codes than before, and whether the pairs that touch, or how many points they have, may be others.
-#[derive(Debug, Default)]
-pub struct Recoded {
-    manifolds: Vec<Changed>,
-    changed: bool,
+#[derive(Clone, Debug, Default)]
+pub(super) struct Recoded {
+    pub(super) manifolds: Vec<Changed>,
+    pub(super) changed: bool,
 }
 
-/// The places of all pairs.
+/// The places of some pairs that follow each other.
 #[derive(Debug)]
 pub struct Places<'a, R: Real> {
+    /// The first.
+    first: u32,
     code: &'a mut [R],
     geometry: &'a mut [[R; ROW]],
     gap: &'a mut [[R; 4]],
-    recoded: Recoded,
+    recoded: &'a mut Recoded,
 }
 
 impl<R: Real> Manifolds<R> {
-    /// All places; what is written to them is known by [`Manifolds::keep`].
+    /// All places.
     pub fn places(&mut self) -> Places<'_, R> {
         let pairs = self.pairs();
-        let recoded = Recoded { manifolds: std::mem::take(&mut self.recoded), changed: self.changed };
         Places {
+            first: 0,
             code: &mut self.now.code.padded_mut()[..pairs],
             geometry: &mut self.now.geometry.rows_mut()[..pairs],
             gap: &mut self.now.gap.fours_mut()[..pairs],
-            recoded,
+            recoded: &mut self.recoded,
         }
     }
 
-    /// Takes in what was written.
-    pub fn keep(&mut self, recoded: Recoded) {
-        (self.recoded, self.changed) = (recoded.manifolds, recoded.changed);
+    /// All places in several shares, each but the last of which ends before a place; [`Manifolds::join_places`] follows.
+    pub(crate) fn cut_places(&mut self, ends: &[Option<u32>]) -> PerPart<Places<'_, R>> {
+        let Self { recoded, beside, .. } = self;
+        beside.resize_with(beside.len().max(ends.len()), Recoded::default);
+        let pairs = self.now.ends[5];
+        let mut code = &mut self.now.code.padded_mut()[..pairs];
+        let mut geometry = &mut self.now.geometry.rows_mut()[..pairs];
+        let mut gap = &mut self.now.gap.fours_mut()[..pairs];
+        let mut first = 0;
+        let lists = std::iter::once(recoded).chain(beside);
+        let mut shares = std::array::from_fn(|_| None);
+        for ((share, &end), recoded) in shares.iter_mut().zip(ends).zip(lists) {
+            let count = end.map(|end| (end - first) as usize);
+            let (code, geometry, gap) =
+                (take(&mut code, count), take(&mut geometry, count), take(&mut gap, count));
+            *share = Some(Places { first, code, geometry, gap, recoded });
+            first = end.unwrap_or(first);
+        }
+        shares
+    }
+
+    /// Puts what has changed in shares behind each other.
+    pub(crate) fn join_places(&mut self) {
+        for share in &mut self.beside {
+            self.recoded.manifolds.append(&mut share.manifolds);
+            self.recoded.changed |= std::mem::take(&mut share.changed);
+        }
     }
 }
 
 impl<R: Real> Places<'_, R> {
-    /// What has changed.
-    pub fn finish(self) -> Recoded {
-        self.recoded
-    }
-
     /// Writes what was found for `WIDTH` pairs: rows given as lanes, codes ≥ 0. Places that are none of these are left out.
     #[inline(always)]
     pub fn write<L: Lanes<Elem = R>>(&mut self, places: &[u32], code: L, geometry: [L; ROW], gap: [L; 4]) {
-        let (first, last) = (places[0] as usize, places[L::WIDTH - 1] as usize);
+        let at = |place: u32| place.wrapping_sub(self.first) as usize;
+        let (first, last) = (at(places[0]), at(places[L::WIDTH - 1]));
         if last < self.code.len() && last - first == L::WIDTH - 1 {
             // Neighbours, as all are where every pair is looked at: rows go straight to their places.
             self.write_neighbours(first, code, geometry, gap);
@@ -70,7 +93,7 @@ impl<R: Real> Places<'_, R> {
         L::scatter_fours(gap, &mut gaps, &IN_ORDER);
         let codes = code.to_array();
         for (lane, &place) in places[..L::WIDTH].iter().enumerate() {
-            let at = place as usize;
+            let at = place.wrapping_sub(self.first) as usize;
             if at < self.code.len() {
                 (self.geometry[at], self.gap[at]) = (rows[lane], gaps[lane]);
                 self.set_code(at, codes[lane]);
@@ -99,7 +122,7 @@ impl<R: Real> Places<'_, R> {
     #[inline(never)]
     pub fn write_apart(&mut self, places: &[u32]) {
         for &place in places {
-            let at = place as usize;
+            let at = place.wrapping_sub(self.first) as usize;
             if at < self.code.len() {
                 self.set_code(at, R::ZERO);
             }
@@ -119,7 +142,7 @@ impl<R: Real> Places<'_, R> {
     fn recode(&mut self, at: usize, before: Code, now: Code) {
         self.recoded.changed |= before.points() != now.points();
         if before != now {
-            let place = at as u32;
+            let place = self.first + at as u32;
             self.recoded.manifolds.push(Changed { place, before, now });
         }
     }

@@ -95,7 +95,7 @@ impl<R: Real> Manifolds<R> {
         self.before.make_room(most);
         self.now.close();
         self.rest.now.close();
-        self.changed = true;
+        self.recoded.changed = true;
     }
 
     /// Forgets the pairs of one slot, which will mean another body or none.
@@ -110,7 +110,7 @@ impl<R: Real> Manifolds<R> {
         }
         let (a, b) = (&self.now.a, &self.now.b);
         self.touching.retain(|&at| a[at as usize] != slot && b[at as usize] != slot);
-        self.changed = true;
+        self.recoded.changed = true;
     }
 
     /// Slots of the pairs that touch and whose bodies all sleep or cannot move.

@@ -89,13 +89,15 @@ impl<R: Real> PairTable<R> {
         self.home[at] = Home::NONE;
     }
 
+    /// Takes over what a pair keeps: nobody asks for the rows of one that does not touch.
     #[inline]
     pub(super) fn take_place(&mut self, at: usize, old: &Self, old_at: usize) {
-        self.code[at] = old.code[old_at];
-        self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];
-        self.gap.fours_mut()[at] = old.gap.fours()[old_at];
-        self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
-        self.home[at] = old.home[old_at];
+        (self.code[at], self.home[at]) = (old.code[old_at], old.home[old_at]);
+        if Code::of(self.code[at]).points() > 0 {
+            self.geometry.rows_mut()[at] = old.geometry.rows()[old_at];
+            self.gap.fours_mut()[at] = old.gap.fours()[old_at];
+            self.impulse.fours_mut()[at] = old.impulse.fours()[old_at];
+        }
     }
 
     /// The list ends here: makes room for no more than it has, and clears the places that are no pairs.

@@ -36,55 +36,20 @@ use crate::body::Bodies;
 use crate::column::{BLOCK, Column};
 use crate::each::Each as _;
 use crate::force::{Matter, acceleration};
-use crate::lanes::{LaneMask, Lanes, Real, set_lanes};
+use crate::lanes::{LaneMask, Lanes, Real};
 use crate::motion::{
-    Block, Chosen, Fast, FastBodies, Motion, Plan, Skipped, Warm, angular_acceleration, block, block_starts,
-    blocks_in, lanes_in, load_four, matter, store_four, vectors,
+    Block, Chosen, Common, FastBodies, Motion, Plan, Skipped, Span, Warm, angular_acceleration, block,
+    block_starts, four_of, lanes_of, matter, put_four, vectors,
 };
-use crate::settings::{Integrator, Skip};
-use crate::vec2::{Rot, Vec2};
+use crate::settings::{Integrator, MOST_THREADS, Skip};
+use crate::vec2::Vec2;
 
 pub(crate) use finish::finish;
 pub(crate) use scheme::{Advance, Scheme, Step};
 pub(crate) use stiff::Stiff;
 
+use finish::{push_fast, turn};
 use scheme::{ClosedForm, along, drift};
-
-/// Notes the fast among the bodies of one lane value, before their poses change.
-#[inline(always)]
-fn note_fast<L: Lanes>(
-    bodies: &Bodies<L::Elem>,
-    at: usize,
-    path: L,
-    moved: [L; 3],
-    fast: &mut Vec<Fast<L::Elem>>,
-) {
-    let is_fast = bodies.core.lanes::<L>()[at].lt(path);
-    if is_fast.any() {
-        push_fast(bodies, at, is_fast.bits(), moved, fast);
-    }
-}
-
-/// Out of line, as [`move_finely`]: inlined into every scheme at every width these few calls were a tenth of this room.
-#[cold]
-#[inline(never)]
-fn push_fast<L: Lanes>(
-    bodies: &Bodies<L::Elem>,
-    at: usize,
-    lanes: u32,
-    moved: [L; 3],
-    fast: &mut Vec<Fast<L::Elem>>,
-) {
-    let moved = moved.each(L::to_array);
-    for lane in set_lanes(lanes) {
-        let slot = at * L::WIDTH + lane;
-        fast.push(Fast {
-            slot: slot as u32,
-            start: [&bodies.x, &bodies.y, &bodies.c, &bodies.s].each(|column| column[slot]),
-            moved: moved.each(|lanes| lanes[lane]),
-        });
-    }
-}
 
 /// Moves a block of bodies whose positions are finer than their columns. By value: a reference would keep blocks that
 /// nobody hands over here in memory too.
@@ -190,14 +155,21 @@ fn fly_with<L: Lanes, S: Scheme>(
         if let Some(fast) = fast {
             for i in 0..BLOCK {
                 let moved = [moved[i].x, moved[i].y, angle[i]];
-                let path = path_of(moved, bodies.radius.lanes::<L>()[at + i]);
-                note_fast(bodies, at + i, path, moved, fast);
+                let is_fast =
+                    bodies.core.lanes::<L>()[at + i].lt(path_of(moved, bodies.radius.lanes::<L>()[at + i]));
+                if is_fast.any() {
+                    let pose = [&mut bodies.x, &mut bodies.y, &mut bodies.c, &mut bodies.s];
+                    let pose = pose.map(Column::lanes_mut::<L>);
+                    push_fast(&pose, (0, at + i), is_fast.bits(), moved, fast);
+                }
             }
         }
         if still {
             skipped.rotation += bodies.live_in(at * L::WIDTH..(at + BLOCK) * L::WIDTH) as u64;
         } else {
-            turn_block(bodies, at..at + BLOCK, &angle);
+            let attitudes =
+                [&mut bodies.c, &mut bodies.s].map(|column| &mut column.lanes_mut::<L>()[at..at + BLOCK]);
+            turn(attitudes, &angle);
             for (i, spin) in bodies.w.lanes_mut::<L>()[at..at + BLOCK].iter_mut().enumerate() {
                 *spin = w[i];
             }
@@ -233,35 +205,37 @@ impl<L: Lanes> Default for Begun<L> {
 }
 
 impl<L: Lanes> Begun<L> {
+    /// `start`: of a block of the part.
     #[inline(always)]
     fn read(
         &mut self,
         carries: bool,
         bodies: &Bodies<L::Elem>,
-        motion: &Motion<L::Elem>,
+        part: &Span<'_, L>,
         start: usize,
         from: Warm,
     ) {
         let Self { inv_mass, state, warm, total } = self;
         for i in 0..BLOCK {
             let at = start + i;
-            let [px, py, pw, held] = load_four::<L>(&motion.velocity, at);
+            let [px, py, pw, held] = four_of::<L>(part.velocity, at);
             inv_mass[i] = held;
             state[i] = [px, py, pw];
             if from == Warm::Summed {
                 warm[i] = state[i];
             } else if carries {
                 for k in 0..3 {
-                    warm[i][k] = state[i][k] - motion.free[k].lanes::<L>()[at];
+                    warm[i][k] = state[i][k] - part.free[k][at];
                 }
             }
             if from == Warm::Onward {
-                let last = load_four::<L>(&motion.moved, at);
+                let last = four_of::<L>(part.moved, at);
                 for k in 0..3 {
-                    total[i][k] = motion.total[k].lanes::<L>()[at] + last[k];
+                    total[i][k] = part.total[k][at] + last[k];
                 }
             } else {
-                state[i] = [bodies.vx.lanes()[at], bodies.vy.lanes()[at], bodies.w.lanes()[at]];
+                let slot = part.first + at;
+                state[i] = [bodies.vx.lanes()[slot], bodies.vy.lanes()[slot], bodies.w.lanes()[slot]];
             }
         }
     }
@@ -273,104 +247,129 @@ fn predict_with<L: Lanes, S: Scheme>(
     motion: &mut Motion<L::Elem>,
     from: Warm,
 ) {
-    let step = Step::new(plan.h_secs);
-    let per_h = L::lit(1.0 / plan.h_secs);
-    let share = L::lit(plan.impulse_share());
-    let runs = std::mem::take(&mut motion.runs);
+    motion.each_span::<L, _>(plan.workers, &mut [(); MOST_THREADS], |common, part, ()| {
+        predict_span::<L, S>(plan, bodies, common, part, from);
+    });
+}
+
+fn predict_span<L: Lanes, S: Scheme>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &Bodies<L::Elem>,
+    common: Common<'_, L::Elem>,
+    part: &mut Span<'_, L>,
+    from: Warm,
+) {
     // Whole blocks, padding and all: left off at its end, a loop over one was code at width 1 that valgrind 3.19 does not
     // know (a `vmovq` between registers, of the form for memory).
-    for (start, _) in blocks_in::<L>(&runs) {
+    for start in part.own(common.runs).flat_map(block_starts::<L>) {
         let mut begun = Begun::default();
-        begun.read(plan.carries, bodies, motion, start, from);
-        let Begun { inv_mass, state, warm, total } = &mut begun;
-        let chosen = motion.group.current.map(|substep_group| -> [Chosen<L>; BLOCK] {
+        begun.read(plan.carries, bodies, part, start, from);
+        let chosen = common.group.current.map(|substep_group| -> [Chosen<L>; BLOCK] {
+            let at = part.first + start;
             crate::each::indexed(|i| {
-                Chosen::new(&motion.group.of_slot, substep_group, start + i, inv_mass[i])
+                Chosen::new(&common.group.of_slot, substep_group, at + i, begun.inv_mass[i])
             })
         });
-        for (warm, chosen) in warm.iter_mut().zip(chosen.iter().flatten()) {
+        for (warm, chosen) in begun.warm.iter_mut().zip(chosen.iter().flatten()) {
             // What drives bodies without mass in one substep group is no warm start in the next.
             *warm = warm.each(|warm| L::select(chosen.massless, L::zero(), warm));
         }
-        let x = vectors::<L>(block(&bodies.x, start), block(&bodies.y, start));
-        let here = crate::each::indexed(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
-        let v = crate::each::indexed(|i| Vec2::new(state[i][0], state[i][1]));
-        let matter = Matter { inv_mass, ..matter(bodies, start) };
-        let since = |c: f64| plan.since_secs + plan.h_secs * c;
-        let next = S::advance(step, &here, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
-        let alpha = angular_acceleration::<L>(bodies, start);
-        for i in 0..BLOCK {
-            let at = start + i;
-            let alpha = alpha.map_or(L::zero(), |a| L::select(inv_mass[i].le(L::zero()), L::zero(), a[i]));
-            let (turn, spin) = S::spin(step, state[i][2], alpha);
-            let free = [next.velocity[i].x, next.velocity[i].y, spin];
-            let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
-            let mut row = [matter.inv_mass[i]; 4];
-            for k in 0..3 {
-                let base = if plan.moving { ahead[k] * per_h } else { free[k] };
-                row[k] = base + warm[i][k] * share;
-            }
-            let columns = [&mut motion.free, &mut motion.ahead, &mut motion.total];
-            for (column, mut new) in columns.into_iter().zip([free, ahead, total[i]]) {
-                for k in 0..3 {
-                    let value = &mut column[k].lanes_mut::<L>()[at];
-                    if let Some(chosen) = &chosen {
-                        new[k] = L::select(chosen[i].moves, new[k], *value);
-                    }
-                    *value = new[k];
-                }
-            }
-            if let Some(chosen) = &chosen {
-                let old = load_four::<L>(&motion.velocity, at);
-                row = crate::each::indexed(|k| L::select(chosen[i].moves, row[k], old[k]));
-            }
-            store_four::<L>(&mut motion.velocity, at, row);
-        }
+        predict_block::<L, S>(plan, bodies, (&begun, chosen), part, start);
     }
-    motion.runs = runs;
+}
+
+/// Predicts the bodies of one block of a part.
+#[inline(always)]
+fn predict_block<L: Lanes, S: Scheme>(
+    plan: &Plan<'_, L::Elem>,
+    bodies: &Bodies<L::Elem>,
+    (begun, chosen): (&Begun<L>, Option<[Chosen<L>; BLOCK]>),
+    part: &mut Span<'_, L>,
+    start: usize,
+) {
+    let step = Step::new(plan.h_secs);
+    let (per_h, share) = (L::lit(1.0 / plan.h_secs), L::lit(plan.impulse_share()));
+    let Begun { inv_mass, state, warm, total } = begun;
+    let at = part.first + start;
+    let x = vectors::<L>(block(&bodies.x, at), block(&bodies.y, at));
+    let x = crate::each::indexed(|i| x[i] + Vec2::new(total[i][0], total[i][1]));
+    let v = crate::each::indexed(|i| Vec2::new(state[i][0], state[i][1]));
+    let matter = Matter { inv_mass, ..matter(bodies, at) };
+    let since = |c: f64| plan.since_secs + plan.h_secs * c;
+    let next = S::advance(step, &x, &v, |x, v, c| acceleration(plan.fields, matter, since(c), x, v));
+    let alpha = angular_acceleration::<L>(bodies, at);
+    for i in 0..BLOCK {
+        let at = start + i;
+        let alpha = alpha.map_or(L::zero(), |a| L::select(inv_mass[i].le(L::zero()), L::zero(), a[i]));
+        let (turn, spin) = S::spin(step, state[i][2], alpha);
+        let free = [next.velocity[i].x, next.velocity[i].y, spin];
+        let ahead = [next.displacement[i].x, next.displacement[i].y, turn];
+        let mut row = [inv_mass[i]; 4];
+        for k in 0..3 {
+            let base = if plan.moving { ahead[k] * per_h } else { free[k] };
+            row[k] = base + warm[i][k] * share;
+        }
+        let columns = [&mut part.free, &mut part.ahead, &mut part.total];
+        for (column, mut new) in columns.into_iter().zip([free, ahead, total[i]]) {
+            for k in 0..3 {
+                let value = &mut column[k][at];
+                if let Some(chosen) = &chosen {
+                    new[k] = L::select(chosen[i].moves, new[k], *value);
+                }
+                *value = new[k];
+            }
+        }
+        if let Some(chosen) = &chosen {
+            let old = four_of::<L>(part.velocity, at);
+            row = crate::each::indexed(|k| L::select(chosen[i].moves, row[k], old[k]));
+        }
+        put_four::<L>(part.velocity, at, row);
+    }
 }
 
 /// After contacts: displacements of the substep, and the rows hold velocities again. Are all of them finite?
 #[must_use]
 pub fn advance<L: Lanes>(plan: &Plan<'_, L::Elem>, motion: &mut Motion<L::Elem>) -> bool {
+    let mut finite = [true; MOST_THREADS];
+    motion.each_span::<L, _>(plan.workers, &mut finite, |common, part, finite| {
+        *finite = advance_span::<L>(plan, common, part);
+    });
+    !finite.contains(&false)
+}
+
+fn advance_span<L: Lanes>(
+    plan: &Plan<'_, L::Elem>,
+    common: Common<'_, L::Elem>,
+    part: &mut Span<'_, L>,
+) -> bool {
     let (h, per_h) = (Step::<L>::new(plan.h_secs).h, L::lit(1.0 / plan.h_secs));
     let per_share = L::lit(1.0 / plan.impulse_share());
     let mut doubtful = L::zero();
-    // Slices once: in the loop they would be looked up again after every store.
-    let columns = [0, 1, 2].each(|k| (motion.free[k].lanes::<L>(), motion.ahead[k].lanes::<L>()));
-    for at in lanes_in::<L>(&motion.runs) {
-        let row = load_four::<L>(&motion.velocity, at);
-        let mut velocity = row;
-        let mut moved = [L::zero(); 4];
-        for k in 0..3 {
-            let (free, ahead) = (columns[k].0[at], columns[k].1[at]);
-            let base = if plan.moving { ahead * per_h } else { free };
-            let change = row[k] - base;
-            velocity[k] = free + change * per_share;
-            moved[k] = ahead + h * change;
-            // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
-            doubtful = doubtful + moved[k] * L::zero();
+    for run in part.own(common.runs) {
+        for at in lanes_of::<L>(&run) {
+            let row = four_of::<L>(part.velocity, at);
+            let mut velocity = row;
+            let mut moved = [L::zero(); 4];
+            for k in 0..3 {
+                let (free, ahead) = (part.free[k][at], part.ahead[k][at]);
+                let base = if plan.moving { ahead * per_h } else { free };
+                let change = row[k] - base;
+                velocity[k] = free + change * per_share;
+                moved[k] = ahead + h * change;
+                // 0 while finite, NaN once not, and NaN stays; a velocity that is not finite is seen in `change`.
+                doubtful = doubtful + moved[k] * L::zero();
+            }
+            if let Some(substep_group) = common.group.current {
+                let chosen = Chosen::<L>::new(&common.group.of_slot, substep_group, part.first + at, row[3]);
+                let old = four_of::<L>(part.moved, at);
+                velocity = crate::each::indexed(|k| L::select(chosen.moves, velocity[k], row[k]));
+                moved = crate::each::indexed(|k| L::select(chosen.moves, moved[k], old[k]));
+            }
+            put_four::<L>(part.velocity, at, velocity);
+            put_four::<L>(part.moved, at, moved);
         }
-        if let Some(substep_group) = motion.group.current {
-            let chosen = Chosen::<L>::new(&motion.group.of_slot, substep_group, at, row[3]);
-            let old = load_four::<L>(&motion.moved, at);
-            velocity = crate::each::indexed(|k| L::select(chosen.moves, velocity[k], row[k]));
-            moved = crate::each::indexed(|k| L::select(chosen.moves, moved[k], old[k]));
-        }
-        store_four::<L>(&mut motion.velocity, at, velocity);
-        store_four::<L>(&mut motion.moved, at, moved);
     }
     !(!doubtful.equals(L::zero())).any()
-}
-
-#[inline(always)]
-fn turn_block<L: Lanes>(bodies: &mut Bodies<L::Elem>, lanes: std::ops::Range<usize>, angle: &[L; BLOCK]) {
-    let (c, s) =
-        (&mut bodies.c.lanes_mut::<L>()[lanes.clone()], &mut bodies.s.lanes_mut::<L>()[lanes.clone()]);
-    for i in 0..lanes.len().min(BLOCK) {
-        let rot = Rot { c: c[i], s: s[i] }.turned(angle[i]);
-        (c[i], s[i]) = (rot.c, rot.s);
-    }
 }
 
 #[inline(always)]

@@ -227,10 +227,10 @@ macro_rules! four_fours {
         fn $scatter(from: [$v; 4], to: &mut [[$t; 4]], index: &[u32]) {
             let i: &[u32; 4] = index[..4].try_into().unwrap_or_else(|_| unreachable!("a slice of four"));
             let rows = <$v>::transpose(from);
-            to[i[0] as usize] = *rows[0].as_array();
-            to[i[1] as usize] = *rows[1].as_array();
-            to[i[2] as usize] = *rows[2].as_array();
             to[i[3] as usize] = *rows[3].as_array();
+            to[i[2] as usize] = *rows[2].as_array();
+            to[i[1] as usize] = *rows[1].as_array();
+            to[i[0] as usize] = *rows[0].as_array();
         }
     };
 }
@@ -274,8 +274,8 @@ fn gather_fours_f32x8(fours: &[[f32; 4]], index: &[u32]) -> [f32x8; 4] {
 fn scatter_fours_f32x8(from: [f32x8; 4], to: &mut [[f32; 4]], index: &[u32]) {
     let i: &[u32; 8] = index[..8].try_into().unwrap_or_else(|_| unreachable!("a slice of eight"));
     let rows: [[[f32; 4]; 2]; 4] = bytemuck::cast(transpose_halves(from));
-    for half in 0..2 {
-        for (lane, row) in rows.iter().enumerate() {
+    for half in [1, 0] {
+        for (lane, row) in rows.iter().enumerate().rev() {
             to[i[4 * half + lane] as usize] = row[half];
         }
     }
@@ -292,6 +292,6 @@ fn gather_fours_f32x16(fours: &[[f32; 4]], index: &[u32]) -> [f32x16; 4] {
 #[inline(always)]
 fn scatter_fours_f32x16(from: [f32x16; 4], to: &mut [[f32; 4]], index: &[u32]) {
     let halves: [[f32x8; 2]; 4] = from.each(bytemuck::cast);
-    scatter_fours_f32x8(halves.each(|h| h[0]), to, &index[..8]);
     scatter_fours_f32x8(halves.each(|h| h[1]), to, &index[8..16]);
+    scatter_fours_f32x8(halves.each(|h| h[0]), to, &index[..8]);
 }

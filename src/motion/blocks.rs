@@ -68,13 +68,7 @@ pub(crate) fn angular_acceleration<L: Lanes>(bodies: &Bodies<L::Elem>, at: usize
     })
 }
 
-/// `WIDTH` consecutive rows of four, transposed.
-#[inline(always)]
-pub(crate) fn load_four<L: Lanes>(rows: &Column<L::Elem>, at: usize) -> [L; 4] {
-    L::gather_fours(&rows.fours()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER)
-}
-
-/// The inverse of [`load_four`].
+/// `WIDTH` rows of four, given transposed, to consecutive places.
 #[inline(always)]
 pub(crate) fn store_four<L: Lanes>(rows: &mut Column<L::Elem>, at: usize, values: [L; 4]) {
     L::scatter_fours(values, &mut rows.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH], &IN_ORDER);

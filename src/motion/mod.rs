@@ -4,6 +4,7 @@
 mod blocks;
 mod near;
 mod plan;
+mod span;
 
 use std::ops::Range;
 
@@ -11,10 +12,12 @@ use crate::body::Bodies;
 use crate::column::{BLOCK, Column, PAD};
 use crate::force::acceleration;
 use crate::lanes::{Lanes, Real};
+use crate::workers::Parts;
 
 pub(crate) use blocks::*;
 pub(crate) use near::{Near, TOUCH};
 pub use plan::Plan;
+pub(crate) use span::*;
 
 /// Path over the bounding radius after which a body's manifolds are found anew: linear prediction of its gaps
 /// errs by half the square of this at most, times the radius.
@@ -75,6 +78,10 @@ pub struct Motion<R: Real> {
     pub runs: Vec<Range<usize>>,
     /// Which substep group moves now.
     pub group: Group<R>,
+    /// What workers share out.
+    pub(crate) parts: Parts,
+    /// Memory for fast bodies, per part.
+    pub(crate) fast: Vec<Vec<Fast<R>>>,
 }
 
 /// What the speeds and paths of a step say of the next.
@@ -86,6 +93,14 @@ pub struct Outlook {
     pub needs_speculative_margin: bool,
     /// May two bodies meet fast enough to bounce?
     pub may_bounce: bool,
+}
+
+impl Outlook {
+    /// Not 0 where bodies have moved, are so fast, may bounce.
+    pub(crate) fn note(&mut self, [moved, speculative, bouncing]: [u32; 3]) {
+        self.any_has_moved = moved != 0;
+        (self.needs_speculative_margin, self.may_bounce) = (speculative != 0, bouncing != 0);
+    }
 }
 
 /// The substep group whose bodies move.
@@ -126,6 +141,8 @@ impl<R: Real> Default for Motion<R> {
             outlook: Outlook { any_has_moved: true, needs_speculative_margin: true, may_bounce: true },
             runs: Vec::new(),
             group: Group { of_slot: Column::new(R::ZERO), current: None },
+            parts: Parts::default(),
+            fast: Vec::new(),
         }
     }
 }

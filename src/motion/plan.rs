@@ -3,6 +3,7 @@
 use crate::force::Field;
 use crate::lanes::Real;
 use crate::settings::{Integrator, Skip, Skips};
+use crate::workers::Workers;
 
 /// How smooth motion is to be advanced.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +24,8 @@ pub struct Plan<'a, R> {
     pub moving: bool,
     /// Does a substep begin with what contacts changed velocities by in the last?
     pub carries: bool,
+    /// Who does it.
+    pub workers: &'a Workers,
 }
 
 impl<R: Real> Plan<'_, R> {

@@ -1,5 +1,7 @@
 //! One bucket's pairs looked at, batch by batch.
 
+use std::ops::Range;
+
 use super::margin::{Ahead, Margin, lengths};
 use super::todo::Todo;
 use super::{Found, Narrow, Pose, passing};
@@ -7,7 +9,9 @@ use crate::body::{Bodies, fine_difference};
 use crate::contact::{Code, Places};
 use crate::each::Each as _;
 use crate::lanes::{LaneMask, Lanes, ROW, Real};
+use crate::settings::MOST_THREADS;
 use crate::vec2::Vec2;
+use crate::workers::{Parts, Workers};
 
 /// What is known of bodies, in rows per slot.
 struct Gathered<'a, R: Real> {
@@ -17,14 +21,18 @@ struct Gathered<'a, R: Real> {
     fine: Option<&'a [[R; 4]]>,
 }
 
+/// Pairs of a bucket from which on it is shared out: some 20 µs.
+const WORTH: usize = 512;
+
 impl<R: Real> Narrow<R> {
     #[inline(always)]
     pub(super) fn run_bucket<L: Lanes<Elem = R>>(
         &mut self,
+        (workers, parts): (&Workers, &Parts),
         bodies: &Bodies<R>,
         todo: &Todo,
         margin: Margin<L>,
-        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
+        collide: impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L> + Sync,
     ) {
         if todo.len == 0 {
             return;
@@ -32,10 +40,30 @@ impl<R: Real> Narrow<R> {
         let Self { poses, speeds, fine, is_fine, manifolds, .. } = self;
         let fine = is_fine.then(|| fine.fours());
         let gathered = Gathered { bodies, poses: poses.rows(), speeds: speeds.fours(), fine };
-        let mut places = manifolds.places();
-        gathered.look(todo, margin, &mut places, &collide);
-        let recoded = places.finish();
-        manifolds.keep(recoded);
+        let mut cuts = [None; MOST_THREADS];
+        let (mut one, mut several);
+        let jobs = if parts.count() == 1 || todo.len < WORTH {
+            one = [Some(manifolds.places())];
+            &mut one[..]
+        } else {
+            // Pairs are in the order of the lower body: those of a part follow each other.
+            for (cut, end) in cuts.iter_mut().zip(parts.ends()) {
+                *cut = end.map(|end| todo.batch_from::<L>(end as u32));
+            }
+            let all = manifolds.padding();
+            let place = |cut: usize| if cut < todo.len { todo.place[cut] } else { all };
+            let ends: [Option<u32>; MOST_THREADS] = crate::each::indexed(|k| cuts[k].map(place));
+            several = manifolds.cut_places(&ends[..parts.count()]);
+            &mut several[..parts.count()]
+        };
+        workers.each(jobs, |k, places| {
+            if let Some(places) = places {
+                let start = if k == 0 { 0 } else { cuts[k - 1].unwrap_or(0) };
+                let pairs = start..cuts[k].unwrap_or(todo.len);
+                gathered.look(todo, pairs, margin, places, &collide);
+            }
+        });
+        manifolds.join_places();
     }
 }
 
@@ -44,13 +72,14 @@ impl<R: Real> Gathered<'_, R> {
     fn look<L: Lanes<Elem = R>>(
         &self,
         todo: &Todo,
+        pairs: Range<usize>,
         margin: Margin<L>,
         kept: &mut Places<'_, R>,
         collide: &impl Fn(&Pose<L>, &Pose<L>, [&[u32]; 2], L) -> Found<L>,
     ) {
         let (looks_ahead, by_length) = (L::zero().lt(margin.ahead).any(), L::zero().lt(margin.share).any());
-        let mut at = 0;
-        while at < todo.len {
+        let mut at = pairs.start;
+        while at < pairs.end {
             let slots = [&todo.a[at..at + L::WIDTH], &todo.b[at..at + L::WIDTH]];
             let places = &todo.place[at..at + L::WIDTH];
             let mut a = Pose::gather(self.poses, slots[0]);

@@ -30,6 +30,7 @@ use crate::lanes::{IN_ORDER, Lanes, ROW, Real};
 use crate::motion::Near;
 use crate::seams::Seams;
 use crate::vec2::{Rot, Vec2};
+use crate::workers::{Parts, Workers, share_rows};
 
 use margin::Margin;
 use polygon_polygon::Hull;
@@ -162,7 +163,8 @@ impl<R: Real> Narrow<R> {
         self.rebuild(bodies, pairs);
         self.choose(bodies.len(), MovedBodies::All);
         let stride = Stride { secs: R::ZERO, fallen: [R::ZERO; 2] };
-        self.collide::<L>(bodies, margin.into(), R::ZERO, stride);
+        let alone = (&Workers::ALONE, &Parts::default());
+        self.collide::<L>(alone, bodies, margin.into(), R::ZERO, stride);
         self.manifolds.refresh();
     }
 
@@ -209,8 +211,9 @@ impl<R: Real> Narrow<R> {
     /// Finds the contacts of the pairs chosen; see [`Narrow::run`]. The margin of a pair is wider by what its
     /// centroids can close in `ahead_secs`, up to half the smaller one's radius: a contact is there before bodies overlap.
     /// What is apart now and will not meet in a stride is no contact (`passing.rs`).
-    pub fn collide<L: Lanes<Elem = R>>(
+    pub(crate) fn collide<L: Lanes<Elem = R>>(
         &mut self,
+        shares: (&Workers, &Parts),
         bodies: &Bodies<R>,
         margin: Near<R>,
         ahead_secs: R,
@@ -220,25 +223,29 @@ impl<R: Real> Narrow<R> {
         if self.todo.iter().all(|todo| todo.len == 0) {
             return;
         }
-        self.write_poses::<L>(bodies);
+        self.write_poses::<L>(shares, bodies);
         self.is_fine = bodies.fine.is_some();
         if let Some(rows) = &bodies.fine {
             self.fine.clone_from(rows);
         }
         if ahead_secs > R::ZERO || margin.share > R::ZERO {
-            self.write_speeds::<L>(bodies);
+            self.write_speeds::<L>(shares, bodies);
         }
         let [still, share, ahead] = [margin.metres, margin.share, ahead_secs].each(L::splat);
         let margin = Margin { still, share, ahead, stride };
         let [cc, cb, cp, bb, bp, pp] = std::mem::take(&mut self.todo);
-        self.run_bucket::<L>(bodies, &cc, margin, |a, b, _, margin| circle_circle::collide(a, b, margin));
-        self.run_bucket::<L>(bodies, &cb, margin, |a, b, _, margin| circle_box::collide(a, b, margin));
-        self.run_bucket::<L>(bodies, &bb, margin, |a, b, _, margin| box_box::collide(a, b, margin));
+        self.run_bucket::<L>(shares, bodies, &cc, margin, |a, b, _, margin| {
+            circle_circle::collide(a, b, margin)
+        });
+        self.run_bucket::<L>(shares, bodies, &cb, margin, |a, b, _, margin| {
+            circle_box::collide(a, b, margin)
+        });
+        self.run_bucket::<L>(shares, bodies, &bb, margin, |a, b, _, margin| box_box::collide(a, b, margin));
         // Loops over edges are unrolled to the next of these: a third fewer instructions than counted ones.
         match bodies.polygons.max_count() {
-            0..=4 => self.run_edged::<L, 4>(bodies, [&cp, &bp, &pp], margin),
-            5 | 6 => self.run_edged::<L, 6>(bodies, [&cp, &bp, &pp], margin),
-            _ => self.run_edged::<L, 8>(bodies, [&cp, &bp, &pp], margin),
+            0..=4 => self.run_edged::<L, 4>(shares, bodies, [&cp, &bp, &pp], margin),
+            5 | 6 => self.run_edged::<L, 6>(shares, bodies, [&cp, &bp, &pp], margin),
+            _ => self.run_edged::<L, 8>(shares, bodies, [&cp, &bp, &pp], margin),
         }
         self.todo = [cc, cb, cp, bb, bp, pp];
     }
@@ -246,19 +253,20 @@ impl<R: Real> Narrow<R> {
     /// The buckets with polygons, none of which has more than `EDGES` vertices.
     fn run_edged<L: Lanes<Elem = R>, const EDGES: usize>(
         &mut self,
+        shares: (&Workers, &Parts),
         bodies: &Bodies<R>,
         [cp, bp, pp]: [&Todo; 3],
         margin: Margin<L>,
     ) {
         let hull =
             |slots: &[u32]| Hull::<L>::gather(&bodies.polygons.world, &polygon_index::<L, R>(bodies, slots));
-        self.run_bucket::<L>(bodies, cp, margin, |a, b, [_, ib], margin| {
+        self.run_bucket::<L>(shares, bodies, cp, margin, |a, b, [_, ib], margin| {
             circle_polygon::collide(a, b, &hull(ib), EDGES, margin)
         });
-        self.run_bucket::<L>(bodies, bp, margin, |a, b, [_, ib], margin| {
+        self.run_bucket::<L>(shares, bodies, bp, margin, |a, b, [_, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &Hull::of_box(a), &hull(ib), margin)
         });
-        self.run_bucket::<L>(bodies, pp, margin, |a, b, [ia, ib], margin| {
+        self.run_bucket::<L>(shares, bodies, pp, margin, |a, b, [ia, ib], margin| {
             polygon_polygon::collide::<L, EDGES>(a, b, &hull(ia), &hull(ib), margin)
         });
     }
@@ -285,7 +293,7 @@ impl<R: Real> Narrow<R> {
         gaps.fold(0.0, f64::min)
     }
 
-    fn write_poses<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+    fn write_poses<L: Lanes<Elem = R>>(&mut self, shares: (&Workers, &Parts), bodies: &Bodies<R>) {
         let padded = bodies.len().next_multiple_of(PAD);
         self.poses.resize(padded * ROW);
         self.speeds.resize(padded * 4);
@@ -308,12 +316,14 @@ impl<R: Real> Narrow<R> {
             }
             return;
         }
-        for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            L::store_rows(columns.each(|column| column[at]), &mut rows[at * L::WIDTH..]);
-        }
+        share_rows(shares, &mut rows[..padded], |first, rows| {
+            for (at, rows) in (first / L::WIDTH..).zip(rows.chunks_exact_mut(L::WIDTH)) {
+                L::store_rows(columns.each(|column| column[at]), rows);
+            }
+        });
     }
 
-    fn write_speeds<L: Lanes<Elem = R>>(&mut self, bodies: &Bodies<R>) {
+    fn write_speeds<L: Lanes<Elem = R>>(&mut self, shares: (&Workers, &Parts), bodies: &Bodies<R>) {
         let columns = [&bodies.vx, &bodies.vy, &bodies.radius, &bodies.core];
         if self.few {
             for slot in self.wanted.iter().map(|&slot| slot as usize) {
@@ -324,13 +334,15 @@ impl<R: Real> Narrow<R> {
             return;
         }
         let columns = columns.each(Column::lanes::<L>);
-        for at in 0..bodies.len().div_ceil(L::WIDTH) {
-            let [vx, vy, radius, core] = columns.each(|column| column[at]);
-            let rows = &mut self.speeds.fours_mut()[at * L::WIDTH..(at + 1) * L::WIDTH];
-            // The core is half of the inner radius, of what moves.
-            let inner = L::select(core.lt(L::splat(R::FAR)), core + core, L::zero());
-            L::scatter_fours([vx, vy, radius, inner], rows, &IN_ORDER);
-        }
+        let rows = &mut self.speeds.fours_mut()[..bodies.len().next_multiple_of(PAD)];
+        share_rows(shares, rows, |first, rows| {
+            for (at, rows) in (first / L::WIDTH..).zip(rows.chunks_exact_mut(L::WIDTH)) {
+                let [vx, vy, radius, core] = columns.each(|column| column[at]);
+                // The core is half of the inner radius, of what moves.
+                let inner = L::select(core.lt(L::splat(R::FAR)), core + core, L::zero());
+                L::scatter_fours([vx, vy, radius, inner], rows, &IN_ORDER);
+            }
+        });
     }
 }
 

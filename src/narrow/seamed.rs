@@ -66,8 +66,6 @@ impl<R: Real> Narrow<R> {
                 }
                 None => places.write_apart(&[place]),
             }
-            let found = places.finish();
-            self.manifolds.keep(found);
         }
     }
 }

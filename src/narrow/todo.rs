@@ -2,7 +2,7 @@
 
 use super::MovedBodies;
 use crate::contact::Manifolds;
-use crate::lanes::Real;
+use crate::lanes::{Lanes, Real};
 
 /// The pairs of one bucket to look at: A, B and places apart so that a batch's are three slices.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +45,17 @@ impl Todo {
             chosen += usize::from(look);
         }
         self.end(chosen, manifolds);
+    }
+
+    /// Where the first batch begins of which no pair has a body below a slot.
+    pub(super) fn batch_from<L: Lanes>(&self, slot: u32) -> usize {
+        let (mut low, mut high) = (0, self.len.div_ceil(L::WIDTH));
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            let at = middle * L::WIDTH;
+            if self.a[at].min(self.b[at]) < slot { low = middle + 1 } else { high = middle }
+        }
+        low * L::WIDTH
     }
 
     /// So many pairs are all: padding follows.

@@ -78,7 +78,7 @@ use serde::Deserialize;
 use super::{BodySpec, Scene, SceneError};
 use crate::force::Forces;
 use crate::joint::JointSpec;
-use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver, StiffFields};
+use crate::settings::{Broad, Integrator, Precision, Settings, Skips, Solver, StiffFields, Threads};
 
 /// The keys of a scene file.
 #[derive(Debug, Deserialize)]
@@ -109,6 +109,7 @@ struct FileSettings {
     broad: Option<Broad>,
     lanes: Option<usize>,
     precision: Option<Precision>,
+    threads: Option<Threads>,
     skip: Option<String>,
     continuous: Option<bool>,
     sleep: Option<bool>,
@@ -151,6 +152,7 @@ pub fn parse(path: &str, text: &str) -> Result<(Scene, Settings), SceneError> {
         substeps: asked.substeps.unwrap_or(default.substeps),
         broad: asked.broad.unwrap_or(default.broad),
         precision,
+        threads: asked.threads.unwrap_or(default.threads),
         lanes: asked.lanes.unwrap_or(default.with_precision(precision).lanes),
         skips: skips.map_err(|e| setting(e.to_string()))?,
         continuous: asked.continuous.unwrap_or(default.continuous),

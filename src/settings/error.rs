@@ -26,6 +26,9 @@ pub enum SettingsError {
     /// At least one substep.
     #[error("substeps must be 1 to 1000, got {0}")]
     Substeps(u32),
+    /// More threads gain nothing.
+    #[error("threads must be auto or 1 to {most}, got {0}", most = super::MOST_THREADS)]
+    Threads(usize),
     /// A bound on the sag is a positive length.
     #[error("max-sag must be positive and finite, got {0:?} m")]
     MaxSag(f64),

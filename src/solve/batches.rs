@@ -1,8 +1,8 @@
 //! Contacts of one colour as constraints in batches of lanes: what passes visit.
 //!
-//! Padding lanes hold [`Manifolds::padding`]: all zeros, between the world and itself, so nothing they do
-//! changes a row and every loop over lanes is of fixed length. Only the last batch has some: what leaves gives its lane to
-//! the last.
+//! Padding lanes hold all zeros, between the bodies of their batch's first lane: what they do changes no row, and that lane is
+//! written after them ([`Lanes::scatter_fours`]). So every loop over lanes is of fixed length. Only the last batch has some: what
+//! leaves gives its lane to the last.
 
 use super::constraint::{Constraint, LANE_VALUES, LaneValues, Parts};
 use crate::contact::Manifolds;
@@ -10,7 +10,7 @@ use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
 
 /// What a pass does to one batch; `POINTS` is 1 or 2.
-pub trait Visit<L: Lanes> {
+pub(super) trait Visit<L: Lanes> {
     /// The places of the pairs, and slots of bodies A and B, `WIDTH` each; `at` counts batches of as many points.
     fn visit<const POINTS: usize>(
         &mut self,
@@ -20,10 +20,10 @@ pub trait Visit<L: Lanes> {
     );
 }
 
-/// Whom a batch's lanes join: `WIDTH` entries each count. Slots are held by value: a scatter then needs no
+/// Whom a batch's lanes join, as slots from the first of its part on: `WIDTH` entries each count. Slots are held by value: a scatter then needs no
 /// second check of what the gather has checked.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends<'a> {
+pub(crate) struct Ends<'a> {
     /// Slots of bodies A.
     pub a: &'a [u32; 16],
     /// Slots of bodies B.
@@ -121,7 +121,22 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         }
         (self.place[lane], self.a[lane], self.b[lane]) = (place, a, b);
         self.used += 1;
+        if lane.is_multiple_of(L::WIDTH) {
+            self.pad(lane / L::WIDTH);
+        }
         lane as u32
+    }
+
+    /// Padding lanes of a batch get the slots of its first.
+    fn pad(&mut self, batch: usize) {
+        let first = batch * L::WIDTH;
+        if batch < self.len() {
+            let padding = self.used.clamp(first + 1, first + L::WIDTH)..first + L::WIDTH;
+            for list in [&mut self.a, &mut self.b] {
+                let slot = list[first];
+                list[padding.clone()].fill(slot);
+            }
+        }
     }
 
     /// Room to spare, so that a list that wavers does not allocate.
@@ -155,9 +170,10 @@ impl<L: Lanes, const POINTS: usize> Batches<L, POINTS> {
         });
         self.constraints[last / L::WIDTH].set_lane(last % L::WIDTH, &nothing);
         self.stale[last / L::WIDTH] &= !(1 << (last % L::WIDTH));
-        (self.place[last], self.a[last], self.b[last]) = (padding, 0, 0);
+        self.place[last] = padding;
         self.used = last;
         self.cut();
+        self.pad(last / L::WIDTH);
         moved
     }
 

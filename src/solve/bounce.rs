@@ -41,6 +41,9 @@ pub(crate) struct Rebound<L> {
 pub(crate) struct Bounces<L> {
     two: Vec<[Rebound<L>; 2]>,
     one: Vec<[Rebound<L>; 1]>,
+    /// Of batches of one and of two points: does any of their points bounce? What else is noted of others is of no step: few
+    /// bounce, and a batch's notes are as long as its constraints.
+    any: [Vec<bool>; 2],
 }
 
 /// Bounces of a step; memory is kept from step to step.
@@ -74,7 +77,7 @@ impl<L: Lanes> Default for Bouncing<L> {
 
 impl<L> Default for Bounces<L> {
     fn default() -> Self {
-        Self { two: Vec::new(), one: Vec::new() }
+        Self { two: Vec::new(), one: Vec::new(), any: [Vec::new(), Vec::new()] }
     }
 }
 
@@ -92,6 +95,14 @@ impl<L: Lanes> Bounces<L> {
         };
         self.two.resize(two, [none; 2]);
         self.one.resize(one, [none; 1]);
+        self.any[0].resize(one, false);
+        self.any[1].resize(two, false);
+    }
+
+    /// Does a point of a batch bounce?
+    #[inline(always)]
+    fn any_at<const POINTS: usize>(&mut self, at: usize) -> &mut bool {
+        &mut self.any[POINTS - 1][at]
     }
 
     #[inline(always)]
@@ -115,9 +126,14 @@ impl<L: Lanes> Bouncing<L> {
     ) {
         self.mark_jointed(joints, rows.len());
         let (threshold, dt_secs) = (L::lit(threshold), L::lit(dt_secs));
-        let mut pass = Impacts { rows, jointed: &self.jointed, threshold, dt_secs, any: false };
-        stream.visit(&mut pass);
-        self.rounds = if pass.any { ROUNDS } else { 0 };
+        let mut any = false;
+        stream.each(|first, contacts| {
+            let (rows, jointed) = (&rows[first..], &self.jointed[first..]);
+            let mut pass = Impacts { rows, jointed, threshold, dt_secs, any };
+            contacts.visit(&mut pass);
+            any = pass.any;
+        });
+        self.rounds = if any { ROUNDS } else { 0 };
     }
 
     /// Notes which bodies joints hold, of so many slots.
@@ -185,17 +201,22 @@ impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
         let (speeds, pulls) = (normals(self.rows), normals(self.accelerations));
         let zero = L::zero();
         let gaps = gaps(c, &ends, self.moved.filter(|_| !ends.fresh));
-        for ((point, gap), noted) in c.points.iter().zip(gaps).zip(self.bounces.at::<POINTS>(at)) {
+        let approaches: [(L, L::Mask); POINTS] = crate::each::indexed(|k| {
+            let point = &c.points[k];
             let speed = speeds.velocity(point);
             // What it carried, if anything, is not what stops it: it has yet to meet.
             let meeting = point.velocity_impulse.lt(L::lit(-0.5) * speed);
-            let bounces = speed.lt(-self.threshold) & meeting & zero.lt(point.mass);
-            if !bounces.any() {
-                noted.begins = zero;
-                continue;
-            }
-            self.any = true;
-            let pull = pulls.velocity(point);
+            (speed, speed.lt(-self.threshold) & meeting & zero.lt(point.mass))
+        });
+        *self.bounces.any_at::<POINTS>(at) = false;
+        if !approaches.iter().any(|(_, bounces)| bounces.any()) {
+            return;
+        }
+        self.any = true;
+        let (noted, mut any) = (self.bounces.at::<POINTS>(at), false);
+        for (k, noted) in noted.iter_mut().enumerate() {
+            let (gap, (speed, bounces)) = (gaps[k], approaches[k]);
+            let pull = pulls.velocity(&c.points[k]);
             let meets = zero.max(speed * speed - L::lit(2.0) * (pull * gap)).sqrt();
             let closing = L::select(bounces, meets - speed, L::one());
             let until = L::lit(2.0) * zero.max(gap) / closing;
@@ -203,7 +224,9 @@ impl<L: Lanes> Visit<L> for NoteApproach<'_, L> {
             let meets = L::select(until.le(self.dt_secs), meets, -speed);
             let begins = L::select(bounces, c.restitution * meets, zero);
             *noted = rebound(begins, zero.max(self.dt_secs - until), pull, c.restitution);
+            any |= zero.lt(noted.begins).any();
         }
+        *self.bounces.any_at::<POINTS>(at) = any;
     }
 }
 
@@ -255,11 +278,10 @@ pub(crate) struct Bounce<'a, L: Lanes> {
 impl<L: Lanes> Visit<L> for Bounce<'_, L> {
     #[inline(always)]
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
-        let noted = self.bounces.at::<POINTS>(at);
-        let zero = L::zero();
-        if !noted.iter().any(|noted| zero.lt(noted.begins).any()) {
+        if !*self.bounces.any_at::<POINTS>(at) {
             return;
         }
+        let (noted, zero) = (self.bounces.at::<POINTS>(at), L::zero());
         let (mut a, mut b) = (Side::gather(self.rows, ends.a), Side::gather(self.rows, ends.b));
         let mut to_a = Side::displacement(self.displaced, ends.a, a.inv_mass);
         let mut to_b = Side::displacement(self.displaced, ends.b, b.inv_mass);

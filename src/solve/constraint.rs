@@ -19,7 +19,7 @@ pub(super) use lane::{LANE_VALUES, LaneValues, at};
 
 /// Velocity of the bodies of one side of a batch, m/s and rad/s, and their inverse mass.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<L> {
+pub(crate) struct Side<L> {
     /// Of the centroid.
     pub velocity: Vec2<L>,
     /// Angular.
@@ -31,7 +31,7 @@ pub struct Side<L> {
 impl<L: Lanes> Side<L> {
     /// From rows of four: vx, vy, w, 1/m.
     #[inline(always)]
-    pub fn gather(rows: &[[L::Elem; 4]], index: &[u32]) -> Self {
+    pub(crate) fn gather(rows: &[[L::Elem; 4]], index: &[u32]) -> Self {
         let [x, y, spin, inv_mass] = L::gather_fours(rows, index);
         Self { velocity: Vec2::new(x, y), spin, inv_mass }
     }
@@ -45,14 +45,14 @@ impl<L: Lanes> Side<L> {
 
     /// Back into the rows.
     #[inline(always)]
-    pub fn scatter(&self, rows: &mut [[L::Elem; 4]], index: &[u32]) {
+    pub(crate) fn scatter(&self, rows: &mut [[L::Elem; 4]], index: &[u32]) {
         L::scatter_fours([self.velocity.x, self.velocity.y, self.spin, self.inv_mass], rows, index);
     }
 }
 
 /// What acts at one point along the normal.
 #[derive(Clone, Copy, Debug)]
-pub struct Point<L> {
+pub(crate) struct Point<L> {
     /// r×n of the arms from A and B, metres.
     pub levers: [L; 2],
     /// Effective mass along the normal, kg; 0 where the point does not exist.
@@ -66,14 +66,14 @@ pub struct Point<L> {
 impl<L: Lanes> Point<L> {
     /// Accumulated normal impulse, N·s per substep.
     #[inline(always)]
-    pub fn impulse(&self) -> L {
+    pub(crate) fn impulse(&self) -> L {
         self.velocity_impulse * self.mass
     }
 }
 
 /// `WIDTH` contacts of `POINTS` points each.
 #[derive(Clone, Copy, Debug)]
-pub struct Constraint<L, const POINTS: usize> {
+pub(crate) struct Constraint<L, const POINTS: usize> {
     /// Unit normal from A to B.
     pub normal: Vec2<L>,
     /// 1/(kg·m²) of A and B.
@@ -96,7 +96,7 @@ pub struct Constraint<L, const POINTS: usize> {
 
 /// The rows of `WIDTH` manifolds and bodies, gathered: what a constraint is prepared from.
 #[derive(Clone, Copy, Debug)]
-pub struct Parts<L: Lanes> {
+pub(crate) struct Parts<L: Lanes> {
     /// See [`crate::contact::geometry`].
     pub geometry: [L; 8],
     /// See [`crate::contact::gap`].
@@ -119,7 +119,7 @@ pub(super) fn inverse<L: Lanes>(k: L) -> L {
 impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
     /// From manifolds and masses.
     #[inline(always)]
-    pub fn prepare(parts: &Parts<L>) -> Self {
+    pub(crate) fn prepare(parts: &Parts<L>) -> Self {
         let [nx, ny, ax0, ay0, ax1, ay1, dx, dy] = parts.geometry;
         let normal = Vec2::new(nx, ny);
         let tangent = -normal.right();
@@ -128,7 +128,10 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
         let zero = L::zero();
         let [[ma, ia, length_a], [mb, ib, length_b]] = parts.matter;
         let levers = |arm: Vec2<L>, axis: Vec2<L>| [arm.cross(axis), (arm - to_b).cross(axis)];
-        let response = |[la, lb]: [L; 2]| (ma + mb) + (ia * (la * la) + ib * (lb * lb));
+        // Nothing yields in padding lanes, whose manifold is all zeros.
+        let exists = zero.lt(nx.abs() + ny.abs());
+        let response =
+            |[la, lb]: [L; 2]| L::select(exists, (ma + mb) + (ia * (la * la) + ib * (lb * lb)), zero);
         let points = crate::each::indexed(|k| {
             let levers = levers(arms[k], normal);
             let response = response(levers);
@@ -185,13 +188,13 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// The tangent: the normal turned a quarter counter-clockwise.
     #[inline(always)]
-    pub fn tangent(&self) -> Vec2<L> {
+    pub(crate) fn tangent(&self) -> Vec2<L> {
         -self.normal.right()
     }
 
     /// What the separations of the points change by when A and B move and turn so little.
     #[inline(always)]
-    pub fn gap_change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
+    pub(crate) fn gap_change(&self, a: &[L; 4], b: &[L; 4]) -> [L; POINTS] {
         let along = Vec2::new(b[0] - a[0], b[1] - a[1]).dot(self.normal);
         crate::each::indexed(|k| {
             let [la, lb] = self.points[k].levers;
@@ -207,7 +210,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// Brings the separations up to date with the displacement of both sides, unless they are.
     #[inline(always)]
-    pub fn follow(&mut self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) {
+    pub(crate) fn follow(&mut self, moved: &[[L::Elem; 4]], ends: &Ends<'_>) {
         if ends.fresh {
             return;
         }
@@ -219,7 +222,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// Gives all accumulated impulses to both sides.
     #[inline(always)]
-    pub fn apply_accumulated(&self, a: &mut Side<L>, b: &mut Side<L>) {
+    pub(crate) fn apply_accumulated(&self, a: &mut Side<L>, b: &mut Side<L>) {
         let mut normals = Normals::begin(self, a, b);
         for k in 0..POINTS {
             normals.push(self, k, self.points[k].impulse());
@@ -230,7 +233,7 @@ impl<L: Lanes, const POINTS: usize> Constraint<L, POINTS> {
 
     /// Friction: what stops sliding, within the cone of the normal impulses.
     #[inline(always)]
-    pub fn solve_friction(&mut self, a: &mut Side<L>, b: &mut Side<L>) {
+    pub(crate) fn solve_friction(&mut self, a: &mut Side<L>, b: &mut Side<L>) {
         let mut load = self.points[0].impulse();
         for point in &self.points[1..] {
             load = load + point.impulse();

@@ -110,20 +110,25 @@ impl DirectContacts {
         self.count = 0;
     }
 
-    /// As a step begins: finds the contacts that masses make hard.
-    pub(super) fn choose<L: Lanes>(&mut self, stream: &mut Stream<L>, bodies: &Bodies<L::Elem>) {
-        self.count = 0;
+    /// Are masses in the scene far enough apart?
+    pub(super) fn may_have_any<R: Real>(&mut self, bodies: &Bodies<R>) -> bool {
         if self.looked_at != Some(bodies.revision()) {
             self.looked_at = Some(bodies.revision());
             let inv_masses = movable(bodies).map(|slot| bodies.inv_mass[slot].to_f64());
             let span = inv_masses.fold([f64::INFINITY, 0.0f64], |[low, high], m| [low.min(m), high.max(m)]);
             self.spread = span[1] >= HARD_RATIO * span[0];
         }
-        if !self.spread || stream.batches() == [0; 2] {
+        self.spread
+    }
+
+    /// As a step begins: finds the contacts that masses make hard.
+    pub(super) fn choose<L: Lanes>(&mut self, stream: &mut Stream<L>, bodies: &Bodies<L::Elem>) {
+        self.count = 0;
+        if !self.may_have_any(bodies) || stream.batches() == [0; 2] {
             return;
         }
         self.contacts.clear();
-        stream.visit(&mut All { contacts: &mut self.contacts });
+        stream.each(|first, contacts| contacts.visit(&mut All { first, contacts: &mut self.contacts }));
         let moves = |slot: u32| bodies.kind(slot as usize) == BodyKind::Dynamic;
         let is_hard =
             |contact: &Contact| contact.slots.into_iter().all(moves) && is_hard(bodies, contact.slots);
@@ -194,7 +199,10 @@ impl DirectContacts {
         let share = if let Pass::Push(bias) = pass { bias.share } else { 1.0 };
         self.rows.clear();
         let Self { rows: points, sets, picked, changes, .. } = self;
-        stream.visit(&mut Read { points, sets, picked, velocities: rows, pass, share });
+        stream.each(|first, contacts| {
+            let velocities = &rows[first..];
+            contacts.visit(&mut Read { points, sets, picked, first, velocities, pass, share });
+        });
         changes.resize(rows.len(), [0.0; 3]);
         self.sort_rows();
         let component = |row: &u32, rows: &[Row]| rows[*row as usize].component;
@@ -206,7 +214,10 @@ impl DirectContacts {
             self.solve_component(first..first + count, rows);
             first += count;
         }
-        stream.visit(&mut Write { points: &self.rows, next: 0, picked: &self.picked, share });
+        let mut next = 0;
+        stream.each(|_, contacts| {
+            contacts.visit(&mut Write { points: &self.rows, next: &mut next, picked: &self.picked, share });
+        });
         for slot in self.rows.iter().flat_map(|row| row.slots) {
             let change = std::mem::take(&mut self.changes[slot as usize]);
             for (value, change) in rows[slot as usize].iter_mut().zip(change) {

@@ -35,7 +35,10 @@ fn resolve<L: Lanes>(
 ) {
     let threshold = L::lit(context.speculative_speed());
     let SceneNeeds { friction, restitution, .. } = context.needs;
-    stream.visit(&mut Resolve::<L> { rows, moved, threshold, friction, restitution });
+    stream.share(context.plan.workers, rows, &|rows, first, contacts| {
+        let moved = moved.map(|moved| &moved[first..]);
+        contacts.visit(&mut Resolve::<L> { rows, moved, threshold, friction, restitution });
+    });
 }
 
 /// Velocities: one pass.
@@ -137,6 +140,8 @@ impl<L: Lanes> ContactSolver<L> for Impulse {
     fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
         let slop = L::lit(SLOP);
         let (moved, rows) = (substep.motion.moved.fours_mut(), substep.motion.velocity.fours());
-        substep.stream.visit(&mut Correct { moved, rows, slop });
+        substep.stream.share(substep.context.plan.workers, moved, &|moved, first, contacts| {
+            contacts.visit(&mut Correct { moved, rows: &rows[first..], slop });
+        });
     }
 }

@@ -32,11 +32,14 @@ fn iterate<L: Lanes>(
     let h_secs = context.plan.h_secs;
     let (per_sec, slop) = (L::lit(1.0 / h_secs), L::lit(SLOP));
     let bias_rate = L::lit(BAUMGARTE / h_secs);
-    if context.needs.friction {
-        stream.visit(&mut Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
-    } else {
-        stream.visit(&mut Pass::<L, false> { rows, moved, per_sec, bias_rate, slop });
-    }
+    stream.share(context.plan.workers, rows, &|rows, first, contacts| {
+        let moved = moved.map(|moved| &moved[first..]);
+        if context.needs.friction {
+            contacts.visit(&mut Pass::<L, true> { rows, moved, per_sec, bias_rate, slop });
+        } else {
+            contacts.visit(&mut Pass::<L, false> { rows, moved, per_sec, bias_rate, slop });
+        }
+    });
 }
 
 /// One visit to all contacts.

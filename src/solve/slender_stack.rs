@@ -90,7 +90,7 @@ impl SlenderStacks {
     /// A visitor that notes contacts whose gap is at most `touch` of the pair's length, or that carry something.
     pub(super) fn reading<L: Lanes>(&mut self, touch: f64) -> Touching<'_, L> {
         self.edges.clear();
-        Touching { edges: &mut self.edges, touch: L::lit(touch) }
+        Touching { edges: &mut self.edges, touch: L::lit(touch), first: 0 }
     }
 
     /// Substeps that the stack needs that stands on each body's way down, per slot: so as not to lean, and not to sink in;
@@ -232,6 +232,15 @@ impl Edge {
 pub(super) struct Touching<'a, L> {
     edges: &'a mut Vec<Edge>,
     touch: L,
+    first: u32,
+}
+
+impl<L> Touching<'_, L> {
+    /// The same, of contacts whose slots count from this one.
+    pub(super) fn from(&mut self, first: usize) -> &mut Self {
+        self.first = first as u32;
+        self
+    }
 }
 
 impl<L: Lanes> Visit<L> for Touching<'_, L> {
@@ -250,7 +259,7 @@ impl<L: Lanes> Visit<L> for Touching<'_, L> {
                 let aside = [0, POINTS - 1].each(|k| -levers[k][lane].to_f64());
                 let turn = m * n / (m + n) * (aside[0] - aside[1]).powi(2);
                 let normal = [nx[lane], ny[lane]].each(L::Elem::to_f64);
-                let slots = [ends.a[lane], ends.b[lane]];
+                let slots = [ends.a[lane], ends.b[lane]].each(|slot| slot + self.first);
                 let mass = if POINTS == 1 { m } else { m + n };
                 self.edges.push(Edge { slots, turn, mass, ahead: ahead[lane].to_f64(), aside, normal });
             }

@@ -173,11 +173,15 @@ impl<L: Lanes> ContactSolver<L> for Soft {
         let soft = Softness::new(h_secs, substep.softened * (context.stiffness / h_secs), DAMPING, cap);
         let deep = L::lit(-DEEP);
         let [share, per_share] = [share, 1.0 / share].each(L::lit);
-        if substep.deep {
-            substep.stream.visit(&mut Push::<L, true> { rows, moved, soft, deep, share, per_share });
-        } else {
-            substep.stream.visit(&mut Push::<L, false> { rows, moved, soft, deep, share, per_share });
-        }
+        let any_deep = substep.deep;
+        substep.stream.share(context.plan.workers, rows, &|rows, first, contacts| {
+            let moved = moved.map(|moved| &moved[first..]);
+            if any_deep {
+                contacts.visit(&mut Push::<L, true> { rows, moved, soft, deep, share, per_share });
+            } else {
+                contacts.visit(&mut Push::<L, false> { rows, moved, soft, deep, share, per_share });
+            }
+        });
         let number = |value: L| value.to_array()[0].to_f64();
         let [rate, per_sec, push_cap] = [soft.bias_rate, soft.per_sec, soft.push_cap].each(number);
         let deep = if substep.deep { number(deep) } else { f64::NEG_INFINITY };
@@ -187,6 +191,7 @@ impl<L: Lanes> ContactSolver<L> for Soft {
 
     fn relax(&self, substep: &mut Substep<'_, L>, _: Pairs<'_, L>) {
         let how = Stiffness::soft(substep.h_secs(), substep.share());
+        let (workers, friction) = (substep.context.plan.workers, substep.context.needs.friction);
         let (rows, per_sec) =
             (substep.motion.velocity.fours_mut(), L::lit(1.0 / substep.context.plan.h_secs));
         if let Some(joints) = &mut substep.joints {
@@ -199,11 +204,13 @@ impl<L: Lanes> ContactSolver<L> for Soft {
             {
                 joints.relax_velocities(rows, &how);
             }
-            if substep.context.needs.friction {
-                substep.stream.visit(&mut Relax::<L, true> { rows, per_sec });
-            } else {
-                substep.stream.visit(&mut Relax::<L, false> { rows, per_sec });
-            }
+            substep.stream.share(workers, rows, &|rows, _, contacts| {
+                if friction {
+                    contacts.visit(&mut Relax::<L, true> { rows, per_sec });
+                } else {
+                    contacts.visit(&mut Relax::<L, false> { rows, per_sec });
+                }
+            });
             let per_sec = 1.0 / substep.context.plan.h_secs;
             substep.direct.solve(substep.stream, rows, Pass::Relax(per_sec));
         }

@@ -9,7 +9,7 @@ use super::direct::DirectContacts;
 use super::joint::{JointStream, Sources};
 use super::lengths::StepLengths;
 use super::scheme::{Pairs, Substep, solver_of};
-use super::stream::{Follow, Stream, WarmStart};
+use super::stream::{Stream, WarmStart};
 use super::substep_group::SubstepGroups;
 use super::{SolverContext, avbd, carries_impulses, deep, pushes};
 use crate::body::Bodies;
@@ -18,6 +18,7 @@ use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::motion::{Motion, Warm};
 use crate::settings::Solver;
+use crate::workers::Workers;
 
 /// Constraints and what solvers keep; memory is kept from step to step.
 #[derive(Clone, Debug)]
@@ -90,7 +91,7 @@ impl<L: Lanes> Solving<L> {
     /// Gaps hear of the last displacements now: before bodies that moved are seen otherwise, or contacts leave their lanes.
     pub fn catch_up(&mut self, motion: &Motion<L::Elem>) {
         if std::mem::take(&mut self.behind) {
-            self.stream.visit(&mut Follow { moved: motion.moved.fours() });
+            self.stream.follow_displacements(motion.moved.fours());
         }
     }
 
@@ -112,22 +113,21 @@ impl<L: Lanes> Solving<L> {
         bodies: &Bodies<L::Elem>,
         (manifolds, looked_at): (&mut Manifolds<L::Elem>, impl Iterator<Item = &'a [u32]> + Clone),
         changed: bool,
-        motion: &Motion<L::Elem>,
+        (workers, motion): (&Workers, &Motion<L::Elem>),
     ) {
         self.avbd.outdated |= changed;
         if changed || self.stream.is_outdated() {
             self.stream.arrange(bodies, manifolds, &self.substep_groups);
         }
-        if looked_at.clone().map(<[u32]>::len).sum::<usize>() == manifolds.pairs() {
-            self.stream.touch_all();
-        } else {
+        let all = looked_at.clone().map(<[u32]>::len).sum::<usize>() == manifolds.pairs();
+        if !all {
             let homes = manifolds.homes();
             for &place in looked_at.flatten() {
                 self.stream.touch(homes[place as usize]);
             }
         }
         let moved = self.behind.then_some(motion.moved.fours());
-        self.stream.prepare(manifolds, motion.inverse_masses.fours(), moved);
+        self.stream.prepare((workers, all), manifolds, motion.inverse_masses.fours(), moved);
         if !self.behind {
             self.stream.age();
         }
@@ -236,7 +236,10 @@ impl<L: Lanes> Solving<L> {
         if carries {
             let rows = motion.velocity.fours_mut();
             self.joints.warm_start(rows, self.lengths.joint_scale, 1.0);
-            self.stream.visit(&mut WarmStart { rows, share: L::Elem::from_f64(self.lengths.scale) });
+            let share = L::Elem::from_f64(self.lengths.scale);
+            self.stream.share(context.plan.workers, rows, &|rows, _, contacts| {
+                contacts.visit(&mut WarmStart { rows, share });
+            });
         }
         Warm::Summed
     }
@@ -258,17 +261,22 @@ impl<L: Lanes> Solving<L> {
             self.joints.warm_start(motion.acceleration.fours_mut(), scale, per_sec);
         }
         self.bouncing.bounces.resize(self.stream.batches());
-        let mut pass = bounce::NoteApproach {
-            rows: motion.velocity.fours(),
-            accelerations: motion.acceleration.fours(),
-            moved: self.behind.then_some(motion.moved.fours()),
-            threshold: L::lit(context.bounce_threshold()),
-            dt_secs: L::lit(context.dt_secs),
-            bounces: &mut self.bouncing.bounces,
-            any: false,
-        };
-        self.stream.visit(&mut pass);
-        pass.any
+        let moved = self.behind.then_some(motion.moved.fours());
+        let mut any = false;
+        self.stream.each(|first, contacts| {
+            let mut pass = bounce::NoteApproach {
+                rows: &motion.velocity.fours()[first..],
+                accelerations: &motion.acceleration.fours()[first..],
+                moved: moved.map(|moved| &moved[first..]),
+                threshold: L::lit(context.bounce_threshold()),
+                dt_secs: L::lit(context.dt_secs),
+                bounces: &mut self.bouncing.bounces,
+                any: false,
+            };
+            contacts.visit(&mut pass);
+            any |= pass.any;
+        });
+        any
     }
 
     /// Joints, then contacts of one substep, before bodies move.

@@ -16,6 +16,7 @@
 
 mod moves;
 mod read;
+mod share;
 
 use std::ops::Range;
 
@@ -27,6 +28,7 @@ use crate::body::Bodies;
 use crate::contact::{Changed, Home, Manifolds};
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
+use crate::workers::{Parts, Workers};
 
 /// Lists of one substep group: one per colour, and the overflow.
 const LISTS: usize = COLORS + 1;
@@ -118,11 +120,15 @@ impl<L: Lanes> List<L> {
 /// All contacts in lanes; memory is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct Stream<L: Lanes> {
+    /// Colour by colour within a substep group, substep group by substep group within a part; behind those of parts, in the
+    /// same order, lists of contacts between parts.
     lists: Vec<List<L>>,
     colors: Colors,
-    /// The lists that hold something: colour by colour within a substep group, substep group by substep group.
+    parts: Parts,
+    balance: share::Balance,
+    /// The colours that hold something, substep group by substep group.
     order: Vec<u16>,
-    /// Where each substep group's lists end in `order`.
+    /// Where each substep group's colours end in `order`.
     group_ends: Vec<usize>,
     /// What passes go over, of `order`.
     active: Range<usize>,
@@ -139,6 +145,8 @@ impl<L: Lanes> Default for Stream<L> {
         Self {
             lists: Vec::new(),
             colors: Colors::default(),
+            parts: Parts::default(),
+            balance: share::Balance::default(),
             order: Vec::new(),
             group_ends: vec![0],
             active: 0..0,
@@ -168,9 +176,8 @@ impl<L: Lanes> Stream<L> {
         groups: &SubstepGroups<L::Elem>,
     ) {
         self.outdated = false;
-        let lists = groups.count() * LISTS;
-        if self.lists.len() < lists && !manifolds.is_empty() {
-            self.lists.resize_with(lists, List::default);
+        if self.lists.is_empty() && !manifolds.is_empty() {
+            self.lists.resize_with(groups.count() * LISTS * self.parts.lists(), List::default);
         }
         let mut comers = std::mem::take(&mut self.picked);
         comers.clear();
@@ -183,28 +190,52 @@ impl<L: Lanes> Stream<L> {
         for &place in &comers {
             let slots = manifolds.slots(place as usize);
             let color = self.colors.take(slots, bodies);
-            let list = groups.of_pair(slots) * LISTS + color;
+            let list = self.list_of(groups.of_pair(slots), color, slots);
             self.put(list, place, manifolds);
         }
         self.picked = comers;
-        for number in 0..self.lists.len() {
-            self.join(number, manifolds);
+        self.note_colors();
+        for at in 0..self.order.len() {
+            self.join(self.order[at] as usize, manifolds);
         }
+        let mut base = [0; 2];
+        for list in &mut self.lists {
+            list.base = base;
+            base = [base[0] + list.two.len(), base[1] + list.one.len()];
+        }
+        self.active = 0..self.order.len();
+    }
+
+    /// Notes which colours hold something.
+    fn note_colors(&mut self) {
         self.order.clear();
         self.group_ends.clear();
-        let mut base = [0; 2];
-        for (number, list) in self.lists.iter_mut().enumerate() {
-            list.base = base;
-            let batches = [list.two.len(), list.one.len()];
-            base = [base[0] + batches[0], base[1] + batches[1]];
-            if batches != [0; 2] {
-                self.order.push(number as u16);
+        let colors = self.colors_of_part();
+        for color in 0..colors {
+            let holds = |list: &List<L>| list.two.used() + list.one.used() > 0;
+            if self.lists[color..].iter().step_by(colors).any(holds) {
+                self.order.push(color as u16);
             }
-            if number % LISTS == COLORS {
+            if color % LISTS == COLORS {
                 self.group_ends.push(self.order.len());
             }
         }
-        self.active = 0..self.order.len();
+    }
+
+    /// Who shares passes out.
+    pub(in crate::solve) fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// The list of a contact.
+    fn list_of(&self, group: usize, color: usize, slots: [u32; 2]) -> usize {
+        let part = if color == COLORS { self.parts.lists() - 1 } else { self.parts.list_of(slots) };
+        part * self.colors_of_part() + group * LISTS + color
+    }
+
+    /// Lists of one part.
+    fn colors_of_part(&self) -> usize {
+        self.lists.len() / self.parts.lists()
     }
 
     /// Is there a contact without a colour?
@@ -236,63 +267,55 @@ impl<L: Lanes> Stream<L> {
         }
     }
 
-    /// Notes that all manifolds were found anew.
-    pub fn touch_all(&mut self) {
-        for &number in &self.order {
-            let list = &mut self.lists[number as usize];
-            list.two.touch_all();
-            list.one.touch_all();
-        }
-    }
-
     /// Makes lanes of the manifolds found anew; `inverse_masses` has rows 1/m, 1/I, –, – per slot, `moved` the
-    /// displacements that gaps have yet to hear of: of those in the same batches they do now.
+    /// displacements that gaps have yet to hear of: of those in the same batches they do now. `all`: all were found anew.
     pub fn prepare(
         &mut self,
+        (workers, all): (&Workers, bool),
         manifolds: &Manifolds<L::Elem>,
         inverse_masses: &[[L::Elem; 4]],
         moved: Option<&[[L::Elem; 4]]>,
     ) {
-        for &number in &self.order {
-            let list = &mut self.lists[number as usize];
+        self.each_list(workers, |first, list| {
+            let (inverse_masses, moved) = (&inverse_masses[first..], moved.map(|moved| &moved[first..]));
+            if all {
+                list.two.touch_all();
+                list.one.touch_all();
+            }
             list.two.prepare(manifolds, inverse_masses, moved);
             list.one.prepare(manifolds, inverse_masses, moved);
-        }
+        });
     }
 
-    /// One pass over the contacts chosen: colour by colour, two-point contacts first, the overflow last.
-    #[inline(always)]
-    pub fn visit(&mut self, visitor: &mut impl Visit<L>) {
-        for &number in &self.order[self.active.clone()] {
-            let List { two, one, base, .. } = &mut self.lists[number as usize];
-            two.visit(visitor, base[0]);
-            one.visit(visitor, base[1]);
-        }
+    /// Gaps hear of displacements per slot.
+    pub fn follow_displacements(&mut self, moved: &[[L::Elem; 4]]) {
+        self.each(|first, contacts| contacts.visit(&mut Follow { moved: &moved[first..] }));
     }
 
     /// Marks every constraint's separation as out of date.
     pub fn age(&mut self) {
-        for &number in &self.order {
-            let list = &mut self.lists[number as usize];
-            list.two.age();
-            list.one.age();
+        let colors = self.colors_of_part().max(1);
+        for lists in self.lists.chunks_mut(colors) {
+            for &color in &self.order {
+                let list = &mut lists[color as usize];
+                list.two.age();
+                list.one.age();
+            }
         }
     }
 
     /// Places of the pairs of each list, with whether it is the overflow.
     pub fn places(&self) -> impl Iterator<Item = (bool, impl Iterator<Item = u32>)> {
-        self.order.iter().map(|&number| {
-            let list = &self.lists[number as usize];
-            let places = list.two.places().iter().chain(list.one.places()).copied();
-            (number as usize % LISTS == COLORS, places)
+        self.order.iter().map(|&color| {
+            let lists = self.lists[color as usize..].iter().step_by(self.colors_of_part());
+            let places = lists.flat_map(|list| list.two.places().iter().chain(list.one.places()).copied());
+            (color as usize % LISTS == COLORS, places)
         })
     }
 
     /// Batches of two-point and of one-point contacts.
     pub fn batches(&self) -> [usize; 2] {
-        let of = |count: fn(&List<L>) -> usize| {
-            self.order.iter().map(|&number| count(&self.lists[number as usize])).sum()
-        };
+        let of = |count: fn(&List<L>) -> usize| self.lists.iter().map(count).sum();
         [of(|list| list.two.len()), of(|list| list.one.len())]
     }
 
@@ -309,8 +332,8 @@ impl<L: Lanes> Stream<L> {
 }
 
 /// Gaps hear of displacements.
-pub(crate) struct Follow<'a, R> {
-    pub moved: &'a [[R; 4]],
+struct Follow<'a, R> {
+    moved: &'a [[R; 4]],
 }
 
 impl<L: Lanes> Visit<L> for Follow<'_, L::Elem> {

@@ -185,7 +185,7 @@ impl<R: Real> SubstepGroups<R> {
         self.seen.load.swap(0, 1);
         self.seen.load[0].clear();
         self.seen.load[0].resize(self.of_slot.len(), 0.0);
-        Loads { load: &mut self.seen.load[0], substeps: &self.of_slot }
+        Loads { load: &mut self.seen.load[0], substeps: &self.of_slot, first: 0 }
     }
 
     /// A visitor that notes what touches.
@@ -345,13 +345,22 @@ impl<R: Real> SubstepGroups<R> {
 pub struct Loads<'a> {
     load: &'a mut [f64],
     substeps: &'a [u32],
+    first: usize,
+}
+
+impl Loads<'_> {
+    /// The same, of contacts whose slots count from this one.
+    pub(super) fn from(&mut self, first: usize) -> &mut Self {
+        self.first = first;
+        self
+    }
 }
 
 impl<L: Lanes> Visit<L> for Loads<'_> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, _: usize) {
         let held = c.points.iter().fold(L::zero(), |most, point| most.max(point.velocity_impulse)).to_array();
         for (lane, held) in held.iter().enumerate().take(L::WIDTH) {
-            for slot in [ends.a[lane], ends.b[lane]].each(|slot| slot as usize) {
+            for slot in [ends.a[lane], ends.b[lane]].each(|slot| slot as usize + self.first) {
                 // Bodies come and go between a step and the next.
                 if let (Some(load), Some(&substeps)) = (self.load.get_mut(slot), self.substeps.get(slot)) {
                     *load = load.max(held.to_f64() * f64::from(substeps));

@@ -45,11 +45,14 @@ fn project<L: Lanes>(
     let cap = PUSH_CAP / f64::from(context.plan.substeps);
     let per_sec = L::lit(1.0 / (h_secs * context.plan.impulse_share()));
     let (softness, push_cap) = (L::lit(COMPLIANCE / (h_secs * h_secs)), L::lit(-cap));
-    if context.needs.friction {
-        stream.visit(&mut Project::<L, true> { moved, rows, softness, per_sec, push_cap });
-    } else {
-        stream.visit(&mut Project::<L, false> { moved, rows, softness, per_sec, push_cap });
-    }
+    stream.each(|first, contacts| {
+        let (moved, rows) = (&mut moved[first..], &mut rows[first..]);
+        if context.needs.friction {
+            contacts.visit(&mut Project::<L, true> { moved, rows, softness, per_sec, push_cap });
+        } else {
+            contacts.visit(&mut Project::<L, false> { moved, rows, softness, per_sec, push_cap });
+        }
+    });
 }
 
 /// [`Settle`] for all contacts.
@@ -60,11 +63,14 @@ fn settle<L: Lanes>(
     rows: &mut [[L::Elem; 4]],
 ) {
     let per_sec = L::lit(1.0 / context.plan.h_secs);
-    if context.needs.friction {
-        stream.visit(&mut Settle::<L, true> { moved, rows, per_sec });
-    } else {
-        stream.visit(&mut Settle::<L, false> { moved, rows, per_sec });
-    }
+    stream.share(context.plan.workers, rows, &|rows, first, contacts| {
+        let moved = &moved[first..];
+        if context.needs.friction {
+            contacts.visit(&mut Settle::<L, true> { moved, rows, per_sec });
+        } else {
+            contacts.visit(&mut Settle::<L, false> { moved, rows, per_sec });
+        }
+    });
 }
 
 /// Displacements, and the velocities that follow from them.

@@ -48,6 +48,7 @@ mod engine {
     mod sleep;
     mod solvers;
     mod stiff;
+    mod threads;
     mod waking;
     mod watchdog;
 }

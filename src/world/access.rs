@@ -52,7 +52,8 @@ impl<L: Lanes> World<L> {
         Ok(())
     }
 
-    /// Goes on with other settings. Impulses that contacts and joints carried are forgotten, steps and times are not.
+    /// Goes on with other settings. Impulses that contacts and joints carried are forgotten, steps and times are not; with another
+    /// number of threads nothing is.
     ///
     /// # Errors
     /// Settings that cannot be run with, or of another precision or lane width.
@@ -66,6 +67,12 @@ impl<L: Lanes> World<L> {
             return Err(WorldError::Lanes { have: L::WIDTH, asked: settings.lanes });
         }
         self.laws.forces.check_coupling(self.bodies.len(), &settings).map_err(SceneError::from)?;
+        let with_threads = Settings { threads: settings.threads, ..self.settings };
+        if settings == with_threads && settings != self.settings {
+            // Threads change no bit, nor does it who does the work from now on.
+            self.settings = settings;
+            return Ok(());
+        }
         let bodies = std::mem::take(&mut self.bodies);
         let joints = std::mem::take(&mut self.joints).without_impulses();
         let (revision, Log { steps, time_secs, stopwatch, .. }) = (self.laws.revision, self.log.clone());

@@ -58,6 +58,7 @@ fn settings_named(settings: &Settings) -> Vec<(&'static str, String)> {
         ("broad phase", settings.broad.to_string()),
         ("precision", settings.precision.to_string()),
         ("lanes", settings.lanes.to_string()),
+        ("threads", settings.threads.to_string()),
         ("skips", settings.skips.to_string()),
         ("continuous", settings.continuous.to_string()),
         ("may sleep", settings.sleep.to_string()),

@@ -9,7 +9,7 @@ use lamina::report::Timing;
 use lamina2d::measure::{Counts, Stage};
 use lamina2d::record::Recorder;
 use lamina2d::scene::Scene;
-use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver, StiffFields};
+use lamina2d::settings::{Broad, Integrator, Precision, Settings, Skip, Skips, Solver, StiffFields, Threads};
 use lamina2d::simulation::{Simulation, simulate};
 use lamina2d::world::StepError;
 use serde_json::{Map, Value, json};
@@ -50,6 +50,9 @@ pub(crate) struct Args {
     /// f32 or f64.
     #[arg(long)]
     precision: Option<Precision>,
+    /// Threads of a step: a number, or auto for as many as there are cores where bodies are many [default: 1].
+    #[arg(long)]
+    threads: Option<Threads>,
     /// Where the scene's random numbers come from.
     #[arg(long, value_parser = whole::<u64>, default_value_t = 1)]
     seed: u64,
@@ -168,6 +171,7 @@ fn load(args: &Args) -> anyhow::Result<(Scene, Settings)> {
         broad: args.broad.unwrap_or(asked.broad),
         lanes: args.lanes.unwrap_or(default_lanes),
         precision,
+        threads: args.threads.unwrap_or(asked.threads),
         skips: args.skip.unwrap_or(asked.skips),
         continuous: asked.continuous && !args.no_continuous,
         sleep: args.sleep || asked.sleep,
@@ -221,6 +225,7 @@ fn describe(
         "broad_in_use": world.broad_in_use(),
         "lanes": settings.lanes,
         "precision": settings.precision,
+        "threads": settings.threads,
         "seed": scene.seed,
         "skip": settings.skips.to_string(),
         "continuous": settings.continuous,

@@ -89,6 +89,7 @@ fn number<L: Lanes>(value: L, lane: usize) -> f64 {
 
 /// Notes all contacts.
 pub(super) struct All<'a> {
+    pub first: usize,
     pub contacts: &'a mut Vec<Contact>,
 }
 
@@ -98,7 +99,8 @@ impl<L: Lanes> Visit<L> for All<'_> {
         for lane in 0..L::WIDTH {
             let points = masses.iter().filter(|mass| mass[lane] > L::Elem::ZERO).count() as u32;
             if points > 0 {
-                let (slots, at) = ([ends.a[lane], ends.b[lane]], [POINTS as u32, at as u32, lane as u32]);
+                let slots = [ends.a[lane], ends.b[lane]].each(|slot| slot + self.first as u32);
+                let at = [POINTS as u32, at as u32, lane as u32];
                 let exist = c.points.iter().filter(|point| number(point.mass, lane) > 0.0);
                 let gap = exist.map(|point| number(point.separation, lane)).fold(0.0, f64::min);
                 self.contacts.push(Contact { slots, at, points, gap });
@@ -112,6 +114,8 @@ pub(super) struct Read<'a, R> {
     pub points: &'a mut Vec<Row>,
     pub sets: &'a Sets,
     pub picked: &'a [Vec<u32>; 2],
+    /// The slot that contacts' slots count from, and rows are from.
+    pub first: usize,
     pub velocities: &'a [[R; 4]],
     pub pass: Pass<'a>,
     pub share: f64,
@@ -120,9 +124,10 @@ pub(super) struct Read<'a, R> {
 impl<L: Lanes> Visit<L> for Read<'_, L::Elem> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, ends: Ends<'_>, at: usize) {
         for lane in set_lanes(self.picked[POINTS - 1][at]) {
-            let slots = [ends.a[lane], ends.b[lane]];
+            let own = [ends.a[lane], ends.b[lane]];
             let moves = |slot: &u32| self.velocities[*slot as usize][3] > L::Elem::ZERO;
-            let end = slots.into_iter().find(moves).unwrap_or(slots[1]);
+            let slots = own.each(|slot| slot + self.first as u32);
+            let end = if moves(&own[0]) { slots[0] } else { slots[1] };
             let component = self.sets.seen(end);
             for point in &c.points {
                 let [mass, separation] = [point.mass, point.separation].each(|value| number(value, lane));
@@ -164,7 +169,7 @@ impl Pass<'_> {
 /// Hands impulses back to the contacts, in the order in which they were read.
 pub(super) struct Write<'a> {
     pub points: &'a [Row],
-    pub next: usize,
+    pub next: &'a mut usize,
     pub picked: &'a [Vec<u32>; 2],
     pub share: f64,
 }
@@ -173,8 +178,8 @@ impl<L: Lanes> Visit<L> for Write<'_> {
     fn visit<const POINTS: usize>(&mut self, c: &mut Constraint<L, POINTS>, _: Ends<'_>, at: usize) {
         for lane in set_lanes(self.picked[POINTS - 1][at]) {
             for point in c.points.iter_mut().filter(|point| number(point.mass, lane) > 0.0) {
-                let row = &self.points[self.next];
-                self.next += 1;
+                let row = &self.points[*self.next];
+                *self.next += 1;
                 let mut stopped = point.velocity_impulse.to_array();
                 stopped[lane] = L::Elem::from_f64(row.impulse / (row.mass * self.share));
                 point.velocity_impulse = L::load(&stopped);

@@ -1,6 +1,6 @@
 //! What a step ends with: bounces, and what was deep in something else moved out of it.
 
-use super::{Follow, Solving};
+use super::Solving;
 use crate::contact::Manifolds;
 use crate::each::Each as _;
 use crate::lanes::{Lanes, Real};
@@ -9,6 +9,7 @@ use crate::settings::Solver;
 use crate::solve::bounce::{self, Bouncing, MoveOut};
 use crate::solve::joint::Stiffness;
 use crate::solve::{SolverContext, deep, soft};
+use crate::workers::Workers;
 
 impl<L: Lanes> Solving<L> {
     /// After the last substep: bounces, and deep overlaps.
@@ -60,7 +61,12 @@ impl<L: Lanes> Solving<L> {
         }
         let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours(), (!settled).then_some(motion.moved.fours()));
-        stream.visit(&mut MoveOut { rows, displaced, moved, entered: bounce::by_bounces::<L>, any: false });
+        stream.each(|first, contacts| {
+            let (rows, displaced) = (&rows[first..], &mut displaced[first..]);
+            let moved = moved.map(|moved| &moved[first..]);
+            let entered = bounce::by_bounces::<L>;
+            contacts.visit(&mut MoveOut { rows, displaced, moved, entered, any: false });
+        });
         self.displace(motion, settled);
         true
     }
@@ -70,10 +76,22 @@ impl<L: Lanes> Solving<L> {
         let Self { bouncing: Bouncing { displaced, bounces, jointed, .. }, stream, .. } = self;
         let (rows, moved) = (motion.velocity.fours_mut(), (!settled).then_some(motion.moved.fours()));
         let touch = L::lit(TOUCH);
-        let (any, any_jointed) = (false, false);
-        let mut pass = bounce::Bounce { rows, displaced, touch, moved, bounces, jointed, any, any_jointed };
-        stream.visit(&mut pass);
-        pass.any.then_some(pass.any_jointed)
+        let (mut any, mut any_jointed) = (false, false);
+        stream.each(|first, contacts| {
+            let mut pass = bounce::Bounce {
+                rows: &mut rows[first..],
+                displaced: &mut displaced[first..],
+                touch,
+                moved: moved.map(|moved| &moved[first..]),
+                bounces,
+                jointed: &jointed[first..],
+                any,
+                any_jointed,
+            };
+            contacts.visit(&mut pass);
+            (any, any_jointed) = (pass.any, pass.any_jointed);
+        });
+        any.then_some(any_jointed)
     }
 
     /// Joints take from what bounces displace what would part them: a displacement is to its push what a velocity is to its
@@ -113,9 +131,14 @@ impl<L: Lanes> Solving<L> {
         let entered =
             |[gap, way, mass, length]: [L; 4]| deep::owed(deep * length, most * length, [gap, way, mass]);
         let moved = (!settled).then_some(moved);
-        let mut pass = MoveOut { rows, displaced, moved, entered, any: false };
-        stream.visit(&mut pass);
-        let any = pass.any;
+        let mut any = false;
+        stream.each(|first, contacts| {
+            let (rows, displaced) = (&rows[first..], &mut displaced[first..]);
+            let mut pass =
+                MoveOut { rows, displaced, moved: moved.map(|moved| &moved[first..]), entered, any };
+            contacts.visit(&mut pass);
+            any = pass.any;
+        });
         if any {
             self.displace(motion, settled);
         }
@@ -126,7 +149,7 @@ impl<L: Lanes> Solving<L> {
     fn displace(&mut self, motion: &mut Motion<L::Elem>, settled: bool) {
         let Self { bouncing: Bouncing { displaced, .. }, stream, .. } = self;
         if settled {
-            stream.visit(&mut Follow { moved: displaced });
+            stream.follow_displacements(displaced);
         }
         for (moved, displaced) in motion.moved.fours_mut().iter_mut().zip(displaced) {
             let changes = std::mem::replace(displaced, [L::Elem::ZERO; 4]);
@@ -140,7 +163,7 @@ impl<L: Lanes> Solving<L> {
     pub(super) fn take_rows(&mut self, manifolds: &Manifolds<L::Elem>, motion: &Motion<L::Elem>) {
         if self.in_rows {
             self.stream.take_rows(manifolds);
-            self.stream.prepare(manifolds, motion.inverse_masses.fours(), None);
+            self.stream.prepare((&Workers::ALONE, false), manifolds, motion.inverse_masses.fours(), None);
         }
     }
 }

@@ -7,7 +7,6 @@ use crate::force::Field;
 use crate::joint::Joints;
 use crate::lanes::{Lanes, Real};
 use crate::motion::Motion;
-use crate::solve::stream::Follow;
 use crate::solve::substep_group::{Goal, SubstepGroups};
 
 impl<L: Lanes> Solving<L> {
@@ -24,11 +23,11 @@ impl<L: Lanes> Solving<L> {
             let flew = self.substep_groups.flew;
             let mut loads = goal.max_sag.map(|_| self.substep_groups.reading());
             if let Some(loads) = loads.as_mut().filter(|_| !flew) {
-                self.stream.visit(loads);
+                self.stream.each(|first, contacts| contacts.visit(loads.from(first)));
             }
             let mut touching = self.substep_groups.touching();
             if !flew {
-                self.stream.visit(&mut touching);
+                self.stream.each(|first, contacts| contacts.visit(touching.from(first)));
             }
             self.substep_groups.weigh(goal, bodies, joints.ends(), &self.direct);
         }
@@ -66,10 +65,28 @@ impl<L: Lanes> Solving<L> {
             let groups = &self.substep_groups;
             let moves = |slot: &u32| bodies.kind(*slot as usize) == BodyKind::Dynamic;
             let scale = |slots: [u32; 2]| groups.scale(slots.into_iter().find(moves)? as usize);
-            self.stream.regroup(manifolds, self.in_rows, groups, scale);
+            let parts = *self.stream.parts();
+            self.stream.regroup(manifolds, self.in_rows, (groups, &parts), scale);
             motion.group.of_slot.clone_from(self.substep_groups.index());
         }
         changed
+    }
+
+    /// Cuts the world into as many parts as there are workers; says whether it is cut otherwise than before.
+    pub fn divide(
+        &mut self,
+        workers: usize,
+        bodies: &Bodies<L::Elem>,
+        manifolds: &mut Manifolds<L::Elem>,
+        motion: &mut Motion<L::Elem>,
+    ) -> bool {
+        // What is solved at once is so in the order of lists.
+        let count = if self.direct.may_have_any(bodies) { 1 } else { workers };
+        let Some(parts) = self.stream.divide(count, bodies, manifolds) else { return false };
+        self.catch_up(motion);
+        self.stream.regroup(manifolds, self.in_rows, (&self.substep_groups, &parts), |_| None);
+        motion.parts = parts;
+        true
     }
 
     /// How often substeps are counted out in a step: once for each number of them.
@@ -91,7 +108,7 @@ impl<L: Lanes> Solving<L> {
     /// kinematic bodies will be of another substep when the next step begins.
     pub fn leave_group(&mut self, substep_group: usize, motion: &mut Motion<L::Elem>) {
         if self.substep_group.take().is_some() {
-            self.stream.visit(&mut Follow { moved: motion.moved.fours() });
+            self.stream.follow_displacements(motion.moved.fours());
             self.stream.choose(None);
             motion.group.current = None;
             std::mem::swap(&mut motion.runs, self.substep_groups.runs_mut(substep_group));

@@ -4,6 +4,7 @@ use super::{COLORS, JOIN, LISTS, LaneValues, List, Stream, at};
 use crate::contact::{Home, Manifolds, gap, impulse};
 use crate::lanes::{Lanes, Real};
 use crate::solve::substep_group::SubstepGroups;
+use crate::workers::Parts;
 
 impl<L: Lanes> Stream<L> {
     /// After pairs have been listed anew: contacts whose pair has left the list go, the others learn its new place.
@@ -19,7 +20,7 @@ impl<L: Lanes> Stream<L> {
         let mut gone = std::mem::take(&mut self.gone);
         manifolds.take_gone(&mut gone);
         for &home in &gone {
-            if is_overflow(home) {
+            if home.list as usize % LISTS == COLORS {
                 self.lists[home.list as usize].rename(home, padding);
             } else {
                 self.remove(home, manifolds);
@@ -88,13 +89,13 @@ impl<L: Lanes> Stream<L> {
         }
     }
 
-    /// Substep groups are others: contacts keep their colours, and what they hold. `scale(slots)` is what their impulses
-    /// are to be multiplied by, if at all.
-    pub fn regroup(
+    /// Substep groups are others, or parts: contacts keep their colours, and what they hold. `scale(slots)` is what their
+    /// impulses are to be multiplied by, if at all.
+    pub(in crate::solve) fn regroup(
         &mut self,
         manifolds: &mut Manifolds<L::Elem>,
         in_rows: bool,
-        groups: &SubstepGroups<L::Elem>,
+        (groups, parts): (&SubstepGroups<L::Elem>, &Parts),
         scale: impl Fn([u32; 2]) -> Option<L::Elem>,
     ) {
         self.put_overflow_down(manifolds, in_rows);
@@ -105,16 +106,24 @@ impl<L: Lanes> Stream<L> {
             .map(|(place, home)| {
                 (
                     place,
-                    home,
-                    home.is_some().then(|| (self.lane(home), self.lists[home.list as usize].is_stale(home))),
+                    home.is_some().then(|| {
+                        (
+                            self.lane(home),
+                            self.lists[home.list as usize].is_stale(home),
+                            home.list as usize % LISTS,
+                        )
+                    }),
                 )
             })
             .collect();
         for list in &mut self.lists {
             list.clear();
         }
-        self.lists.resize_with(self.lists.len().max(groups.count() * LISTS), List::default);
-        for (place, home, held) in held {
+        self.parts = *parts;
+        let colors = LISTS * parts.lists();
+        let lists = self.lists.len().max(groups.count() * colors).next_multiple_of(colors);
+        self.lists.resize_with(lists, List::default);
+        for (place, held) in held {
             let slots = manifolds.slots(place as usize);
             let scale = scale(slots);
             if let Some(scale) = scale.filter(|_| in_rows || held.is_none()) {
@@ -122,49 +131,55 @@ impl<L: Lanes> Stream<L> {
                     *impulse = *impulse * scale;
                 }
             }
-            let Some((mut values, stale)) = held else { continue };
+            let Some((mut values, stale, color)) = held else { continue };
             if let Some(scale) = scale {
                 let [first, second] = at::VELOCITY_IMPULSE;
                 for at in [first, second, at::TANGENT_IMPULSE] {
                     values[at] = values[at] * scale;
                 }
             }
-            let list = groups.of_pair(slots) * LISTS + home.list as usize % LISTS;
+            let list = self.list_of(groups.of_pair(slots), color, slots);
             self.carry(list, place, (&values, stale), manifolds);
         }
         self.outdated = true;
     }
 
-    /// One-point contacts of a list are solved among its two-point contacts where that saves a batch, while they are few.
-    pub(super) fn join(&mut self, number: usize, manifolds: &mut Manifolds<L::Elem>) {
-        let List { two, one, joined, .. } = &self.lists[number];
+    /// One-point contacts of a colour are solved among its two-point contacts where that saves a batch, while they are few.
+    pub(super) fn join(&mut self, color: usize, manifolds: &mut Manifolds<L::Elem>) {
+        let per_part = self.colors_of_part();
         let points = |place: u32, manifolds: &Manifolds<L::Elem>| manifolds.code(place as usize).points();
         let is_one = |&place: &u32| points(place, manifolds) == 1;
         let batches = |count: usize| count.div_ceil(JOIN);
-        let (two, one) = (two.used(), one.used());
-        let joins = if number % LISTS == COLORS {
+        let of = |count: &dyn Fn(&List<L>) -> usize| {
+            self.lists[color..].iter().step_by(per_part).map(count).sum::<usize>()
+        };
+        let (two, one) = (of(&|list| list.two.used()), of(&|list| list.one.used()));
+        let joined = self.lists[color].joined;
+        let joins = if color % LISTS == COLORS {
             return;
-        } else if *joined {
-            let one = self.lists[number].two.places().iter().filter(|place| is_one(place)).count();
+        } else if joined {
+            let one = of(&|list| list.two.places().iter().filter(|place| is_one(place)).count());
             one < two && one <= 3 * JOIN
         } else {
             let saves = batches(two) + batches(one) > batches(two + one);
             two > 0 && (1..=2 * JOIN).contains(&one) && saves
         };
-        if joins == *joined {
+        if joins == joined {
             return;
         }
-        let list = &mut self.lists[number];
-        list.joined = joins;
         let mut movers = std::mem::take(&mut self.picked);
-        movers.clear();
-        let from = if joins { list.one.places() } else { list.two.places() };
-        movers.extend(from.iter().copied().filter(|&place| points(place, manifolds) == 1));
-        for &place in &movers {
-            let home = manifolds.homes()[place as usize];
-            let (values, stale) = (self.lane(home), self.lists[home.list as usize].is_stale(home));
-            self.remove_lane(home, manifolds);
-            self.carry(number, place, (&values, stale), manifolds);
+        for number in (color..self.lists.len()).step_by(per_part) {
+            let list = &mut self.lists[number];
+            list.joined = joins;
+            movers.clear();
+            let from = if joins { list.one.places() } else { list.two.places() };
+            movers.extend(from.iter().copied().filter(|&place| points(place, manifolds) == 1));
+            for &place in &movers {
+                let home = manifolds.homes()[place as usize];
+                let (values, stale) = (self.lane(home), self.lists[number].is_stale(home));
+                self.remove_lane(home, manifolds);
+                self.carry(number, place, (&values, stale), manifolds);
+            }
         }
         self.picked = movers;
     }
@@ -192,10 +207,11 @@ impl<L: Lanes> Stream<L> {
     }
 
     fn place_in(&mut self, number: usize, place: u32, manifolds: &mut Manifolds<L::Elem>) -> Home {
-        let alone = number % LISTS == COLORS;
+        let (alone, per_part) = (number % LISTS == COLORS, self.colors_of_part());
         let list = &mut self.lists[number];
         let two = alone || list.joined || manifolds.code(place as usize).points() == 2;
-        let contact = (place, manifolds.slots(place as usize));
+        let first = self.parts.first(number / per_part) as u32;
+        let contact = (place, manifolds.slots(place as usize).map(|slot| slot - first));
         let lane = if two {
             list.two.push(contact, manifolds.padding(), alone)
         } else {
@@ -208,7 +224,8 @@ impl<L: Lanes> Stream<L> {
 
     /// A contact is no more.
     fn remove(&mut self, home: Home, manifolds: &mut Manifolds<L::Elem>) {
-        let slots = self.lists[home.list as usize].slots(home);
+        let first = self.parts.first(home.list as usize / self.colors_of_part()) as u32;
+        let slots = self.lists[home.list as usize].slots(home).map(|slot| slot + first);
         self.colors.free(slots, home.list as usize % LISTS);
         self.remove_lane(home, manifolds);
         self.outdated = true;
@@ -239,10 +256,6 @@ impl<L: Lanes> Stream<L> {
             self.lists[number].two.clear();
         }
     }
-}
-
-fn is_overflow(home: Home) -> bool {
-    home.list as usize % LISTS == COLORS
 }
 
 /// Impulses of a lane as a pair's row, N·s.

@@ -32,7 +32,7 @@ macro_rules! everywhere {
             fn find(broad: &mut BroadPhase<Self>, width: usize, bodies: &Bodies<Self>, method: Broad, margin: f64) {
                 let margin = Self::from_f64(margin);
                 match width {
-                    $($width => broad.find::<$lanes>(bodies, method, margin.into(), Self::ZERO, false),)+
+                    $($width => broad.find::<$lanes>(&lamina2d::internals::Workers::ALONE, bodies, method, margin.into(), Self::ZERO, false),)+
                     _ => unreachable!("no width {width}"),
                 };
             }

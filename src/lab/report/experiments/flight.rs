@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use lamina2d::force::Forces;
-use lamina2d::internals::{self, Plan};
+use lamina2d::internals::{self, Plan, Workers};
 use lamina2d::settings::{Integrator, Skips};
 
 use crate::cases::by_name;
@@ -81,6 +81,7 @@ fn measure(count: usize, integrator: Integrator, repeats: usize) -> anyhow::Resu
         skips: Skips::ALL,
         moving: false,
         carries: false,
+        workers: &Workers::ALONE,
     };
     let from = vec![1.0f32; count * BYTES_PER_BODY / 8];
     let mut to = vec![0.0f32; from.len()];

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use lamina2d::body::Bodies;
-use lamina2d::internals::{self, BroadPhase, Narrow, Plan};
+use lamina2d::internals::{self, BroadPhase, Narrow, Plan, Workers};
 use lamina2d::settings::{Broad, Integrator, Settings, Skips};
 
 use crate::cases::by_name;
@@ -161,6 +161,7 @@ fn advance(lanes: usize, mut bodies: Bodies<f32>, integrator: Integrator) -> Box
             skips: Skips::NONE,
             moving: false,
             carries: false,
+            workers: &Workers::ALONE,
         };
         internals::fly_at(lanes, &plan, &mut bodies);
         bodies.live()
