@@ -234,12 +234,6 @@ impl<R: Real> Manifolds<R> {
         into.sort_unstable_by(|a, b| b.cmp(a));
     }
 
-    /// Manifolds with other points or features than when these were last taken.
-    pub fn take_recoded(&mut self, into: &mut Vec<Changed>) {
-        into.clear();
-        into.append(&mut self.recoded.manifolds);
-    }
-
     /// Forgets all pairs and what they kept: bodies came or went, and slots may mean others now.
     pub fn forget(&mut self) {
         self.now.ends = [0; 6];

@@ -24,8 +24,8 @@
 //! When a body is quiet is said in `island/quiet.rs`, what of an island may not sleep though its bodies are quiet in
 //! [`Demand`].
 
+mod fall_asleep;
 mod quiet;
-mod settle;
 
 use std::ops::Range;
 

@@ -45,7 +45,7 @@
 //! | per substep: predict | position, velocity, fields, warm start | solver rows, free velocity, displacement; of bodies whose fields it cannot follow, by what those do exactly |
 //! | per substep: solve | constraints of joints (hard trees and nets at once), then of contacts (those of masses far apart at once), rows | rows, impulses |
 //! | per substep: advance | rows | velocity rows, displacement |
-//! | per substep: settle | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
+//! | per substep: relax | constraints, rows | rows, impulses (`soft`: relaxation and friction; others: positions) |
 //! | end, finish | rows, displacement; where bodies are deep in each other: gaps | velocity, position, attitude, who moved, who is fast |
 //! | continuous, where bodies are fast | pose at the step's beginning, shapes, pairs | pose and velocity of those that meet something |
 //! | measure | pose, velocity | finite check, counts; with bounds on speed or energy: those |

@@ -26,8 +26,9 @@ impl Workers {
     /// The thread that calls.
     pub const ALONE: Self = Self { team: None };
 
-    /// As many as are asked for with so many bodies; these, where they are. Where the system gives no threads a step is done by one.
-    pub(crate) fn for_bodies(&mut self, threads: Threads, bodies: usize) {
+    /// As many as are asked for with so many bodies, the same as before where they are as many. Where the system gives no threads
+    /// a step is done by one.
+    pub(crate) fn of(&mut self, threads: Threads, bodies: usize) -> Self {
         static CORES: LazyLock<usize> =
             LazyLock::new(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get));
         let count = match threads {
@@ -38,6 +39,7 @@ impl Workers {
         if count != self.count() {
             self.team = if count > 1 { Team::new(count).ok().map(Arc::new) } else { None };
         }
+        self.clone()
     }
 
     /// At least one.

@@ -87,7 +87,6 @@ pub struct World<L: Lanes> {
     /// Who sleeps; left alone without [`Settings::sleep`].
     islands: Islands<L::Elem>,
     made: MadeFrom,
-    workers: Workers,
     log: Log,
 }
 
@@ -98,15 +97,7 @@ impl<L: Lanes> World<L> {
     /// A step that is not positive and finite (nothing changes); an event of the scene that cannot be done; a state that turned NaN or infinite
     /// (the world keeps it, for inspection).
     pub fn step(&mut self, dt_secs: f64) -> Result<(), StepError> {
-        let rounded = L::Elem::from_f64(dt_secs);
-        if !(rounded > L::Elem::ZERO && rounded.is_finite()) {
-            return Err(StepError::Dt(dt_secs));
-        }
-        let least = self.settings.precision.shortest_step_secs();
-        if dt_secs < least {
-            return Err(StepError::ShortDt { given: dt_secs, least });
-        }
-        self.settings.dt_secs = dt_secs;
+        let rounded = self.take_dt(dt_secs)?;
         self.act_before(dt_secs)?;
         self.inspect();
         self.begin_watch();
@@ -119,8 +110,7 @@ impl<L: Lanes> World<L> {
             return Ok(());
         }
         self.log.stopwatch.begin(self.bodies.live());
-        self.workers.for_bodies(self.settings.threads, self.bodies.live());
-        let workers = self.workers.clone();
+        let workers = self.motion.workers.of(self.settings.threads, self.bodies.live());
         let Settings { integrator, solver, substeps, skips, .. } = self.settings;
         let needs = self.laws.needs.needed(skips);
 
@@ -150,7 +140,7 @@ impl<L: Lanes> World<L> {
         let lengths = [plan.h_secs, dt_secs];
         let stiff = exact && self.laws.stiff.begin(integrator, &self.bodies, begun_secs, lengths);
         let free_flight = may_fly && !stiff && !self.solving.is_paced(substeps);
-        let (mut skipped, finite) = if free_flight {
+        let (skipped, finite) = if free_flight {
             self.solving.fly(goal.is_some_and(|(_, looked)| looked));
             self.made.forget_poses();
             self.motion.assume_fast_bodies();
@@ -163,7 +153,48 @@ impl<L: Lanes> World<L> {
             moved
         };
         self.laws.fields = fields;
-        let margin = needs.margin(solver);
+        self.stop_fast(needs.margin(solver), dt_secs);
+        self.log.stopwatch.lap(Stage::Integrate);
+
+        self.count(&seen, skipped, needs, free_flight);
+        self.check_finite(finite)?;
+        self.watch(free_flight)?;
+        if self.settings.sleep {
+            self.update_sleep(dt_secs, seen.changed);
+        }
+        self.log.stopwatch.lap(Stage::Measure);
+        Ok(())
+    }
+
+    /// Takes a step's length for that of the settings; as the scalar has it.
+    fn take_dt(&mut self, dt_secs: f64) -> Result<L::Elem, StepError> {
+        let rounded = L::Elem::from_f64(dt_secs);
+        if !(rounded > L::Elem::ZERO && rounded.is_finite()) {
+            return Err(StepError::Dt(dt_secs));
+        }
+        let least = self.settings.precision.shortest_step_secs();
+        if dt_secs < least {
+            return Err(StepError::ShortDt { given: dt_secs, least });
+        }
+        self.settings.dt_secs = dt_secs;
+        Ok(rounded)
+    }
+
+    /// Counts what the step did.
+    fn count(&mut self, seen: &Seen, mut skipped: Skipped, needs: SceneNeeds, free_flight: bool) {
+        let manifolds = &self.narrow.manifolds;
+        skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
+        let mut counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
+        let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
+        counts.direct_joints = self.solving.direct_joints();
+        counts.direct_contacts = if free_flight { 0 } else { self.solving.direct_contacts() };
+        counts.substeps = substep_groups.unwrap_or([self.settings.substeps; 2]);
+        counts.stiff = skipped.stiff as usize;
+        self.log.counts = counts;
+    }
+
+    /// Fast bodies meet what is in their way.
+    fn stop_fast(&mut self, margin: L::Elem, dt_secs: f64) {
         let around = Around {
             margin,
             dt_secs,
@@ -179,23 +210,6 @@ impl<L: Lanes> World<L> {
             self.motion.outlook.any_has_moved = true;
             self.islands.wake(slot);
         }
-        self.log.stopwatch.lap(Stage::Integrate);
-
-        let manifolds = &self.narrow.manifolds;
-        skipped.manifolds = (manifolds.pairs() - seen.looked_at) as u64;
-        self.log.counts = Counts::of(seen.found, manifolds, free_flight, skipped, &self.bodies, needs);
-        let substep_groups = self.solving.substep_groups().span().filter(|_| !free_flight);
-        self.log.counts.direct_joints = self.solving.direct_joints();
-        self.log.counts.direct_contacts = if free_flight { 0 } else { self.solving.direct_contacts() };
-        self.log.counts.substeps = substep_groups.unwrap_or([substeps; 2]);
-        self.log.counts.stiff = skipped.stiff as usize;
-        self.check_finite(finite)?;
-        self.watch(free_flight)?;
-        if self.settings.sleep {
-            self.update_sleep(dt_secs, seen.changed);
-        }
-        self.log.stopwatch.lap(Stage::Measure);
-        Ok(())
     }
 
     /// Brings pairs and their manifolds up to date, as far as something has moved.
@@ -318,7 +332,7 @@ impl<L: Lanes> World<L> {
                 // The next round's prediction would hide whether the solver began it.
                 return (skipped, false);
             }
-            solving.settle(context, bodies, &mut self.narrow.manifolds, motion);
+            solving.relax(context, bodies, &mut self.narrow.manifolds, motion);
             self.log.stopwatch.lap(Stage::Solve);
         }
         (skipped, true)

@@ -80,7 +80,7 @@ impl Stage for Net {
         match self.part {
             Part::Place => solving.prepare_joints(&context, bodies, joints, (None, 0)),
             Part::Push => solving.solve(&context, motion, true),
-            Part::Relax => solving.settle(&context, bodies, manifolds, motion),
+            Part::Relax => solving.relax(&context, bodies, manifolds, motion),
         }
     }
 

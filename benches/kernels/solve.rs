@@ -44,12 +44,12 @@ impl Pass {
         if self.part == Part::Settle && self.solver == Solver::Avbd {
             // It cuts bodies into batches in its first pass after contacts have changed: not what a pass is.
             let untouched = (state.motion.clone(), state.manifolds.clone());
-            state.solving.settle(&context, bodies, &mut state.manifolds, &mut state.motion);
+            state.solving.relax(&context, bodies, &mut state.manifolds, &mut state.motion);
             (state.motion, state.manifolds) = untouched;
         }
         if self.part == Part::Store {
             let State { motion, manifolds, solving } = &mut state;
-            solving.settle(&context, bodies, manifolds, motion);
+            solving.relax(&context, bodies, manifolds, motion);
             solving.end(&context, manifolds, motion);
         }
         state
@@ -80,7 +80,7 @@ impl Stage for Pass {
         let State { motion, manifolds, solving } = now;
         match self.part {
             Part::Solve => solving.solve(&context, motion, true),
-            Part::Settle => solving.settle(&context, &self.pile.bodies, manifolds, motion),
+            Part::Settle => solving.relax(&context, &self.pile.bodies, manifolds, motion),
             Part::Store => solving.write_rows(manifolds, motion),
         }
     }

@@ -56,6 +56,12 @@ impl<R: Real> Manifolds<R> {
         shares
     }
 
+    /// Manifolds with other points or features than when these were last taken.
+    pub fn take_recoded(&mut self, into: &mut Vec<Changed>) {
+        into.clear();
+        into.append(&mut self.recoded.manifolds);
+    }
+
     /// Puts what has changed in shares behind each other.
     pub(crate) fn join_places(&mut self) {
         for share in &mut self.beside {

@@ -12,7 +12,7 @@ use crate::body::Bodies;
 use crate::column::{BLOCK, Column, PAD};
 use crate::force::acceleration;
 use crate::lanes::{Lanes, Real};
-use crate::workers::Parts;
+use crate::workers::{Parts, Workers};
 
 pub(crate) use blocks::*;
 pub(crate) use near::{Near, TOUCH};
@@ -78,7 +78,8 @@ pub struct Motion<R: Real> {
     pub runs: Vec<Range<usize>>,
     /// Which substep group moves now.
     pub group: Group<R>,
-    /// What workers share out.
+    /// Who does a step's work, and what they share out.
+    pub(crate) workers: Workers,
     pub(crate) parts: Parts,
     /// Memory for fast bodies, per part.
     pub(crate) fast: Vec<Vec<Fast<R>>>,
@@ -141,6 +142,7 @@ impl<R: Real> Default for Motion<R> {
             outlook: Outlook { any_has_moved: true, needs_speculative_margin: true, may_bounce: true },
             runs: Vec::new(),
             group: Group { of_slot: Column::new(R::ZERO), current: None },
+            workers: Workers::ALONE,
             parts: Parts::default(),
             fast: Vec::new(),
         }

@@ -288,7 +288,7 @@ impl<L: Lanes> Solving<L> {
     }
 
     /// Joints, then contacts of one substep, after bodies moved.
-    pub fn settle(
+    pub fn relax(
         &mut self,
         context: &SolverContext<'_, L::Elem>,
         bodies: &Bodies<L::Elem>,

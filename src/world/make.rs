@@ -16,7 +16,6 @@ use crate::narrow::Narrow;
 use crate::scene::{Scene, SceneError};
 use crate::settings::{Precision, Settings};
 use crate::solve::{SceneNeeds, Solving};
-use crate::workers::Workers;
 
 impl<L: Lanes> World<L> {
     /// An empty world.
@@ -73,7 +72,6 @@ impl<L: Lanes> World<L> {
             broad: BroadPhase::default(),
             narrow: Narrow::default(),
             solving: Solving::default(),
-            workers: Workers::ALONE,
             motion: Motion::default(),
             continuous: Continuous::default(),
             islands: Islands::default(),

@@ -94,7 +94,7 @@ impl<L: Lanes> World<L> {
         if laws.forces.drive.is_none() && (quiet_time.newly || (quiet_time.some && again)) {
             let substep_secs = dt_secs / f64::from(self.settings.substeps);
             islands.take_demands(demands_of(joints, bodies, substep_secs));
-            islands.settle(bodies, manifolds, runs, !laws.fields.is_empty(), gravity);
+            islands.fall_asleep(bodies, manifolds, runs, !laws.fields.is_empty(), gravity);
         }
         self.log.counts.sleeping = self.islands.sleeping();
         self.log.counts.islands = self.islands.len();

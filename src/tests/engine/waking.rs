@@ -217,7 +217,7 @@ fn links_make_one_island_and_wake_both_ends_when_they_go() {
                 DT_SECS,
             );
         }
-        islands.settle(bodies, &none_touch, runs, false, 0.0);
+        islands.fall_asleep(bodies, &none_touch, runs, false, 0.0);
         [1, 2, 3].map(|slot| islands.is_asleep(slot))
     };
     islands.look_over(&bodies, [[1, 2]]);

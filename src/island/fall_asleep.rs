@@ -20,7 +20,7 @@ impl<R: Real> Islands<R> {
     }
 
     /// Lets the islands in `runs` fall asleep that may. `fields`: does any act? `gravity`, m/s².
-    pub fn settle(
+    pub fn fall_asleep(
         &mut self,
         bodies: &mut Bodies<R>,
         manifolds: &Manifolds<R>,
