@@ -24,7 +24,7 @@ use std::any::Any;
 use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 use std::thread::{JoinHandle, Thread};
 
 /// Looks for the next call that a worker makes without a pause: about 10 µs.
@@ -178,8 +178,13 @@ impl Team {
     /// Where a task does, after the others have ended.
     pub fn each<T: Send>(&self, entries: &mut [T], task: impl Fn(usize, &mut T) + Sync) {
         let workers = self.workers();
-        let busy = if workers > 1 && entries.len() > 1 { self.busy.try_lock().ok() } else { None };
-        if busy.is_none() {
+        let busy = match self.busy.try_lock() {
+            // A call that panicked has ended: nothing of it is left.
+            Err(TryLockError::Poisoned(busy)) => Some(busy.into_inner()),
+            Ok(busy) => Some(busy),
+            Err(TryLockError::WouldBlock) => None,
+        };
+        if workers == 1 || entries.len() < 2 || busy.is_none() {
             return entries.iter_mut().enumerate().for_each(|(k, entry)| task(k, entry));
         }
         for (first, entries) in (0..).step_by(workers).zip(entries.chunks_mut(workers)) {
@@ -249,6 +254,7 @@ unsafe impl<T: Send> Sync for Entries<T> {}
 mod tests {
     use super::Team;
     use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::time::{Duration, Instant};
 
     /// Miri is a hundred times slower.
     const CALLS: usize = if cfg!(miri) { 30 } else { 20_000 };
@@ -300,9 +306,17 @@ mod tests {
         let panic = call.expect_err("one entry panics");
         assert_eq!(panic.downcast_ref::<&str>(), Some(&"entry one"));
         assert_eq!(done.load(Ordering::Relaxed), 2, "the others have ended");
-        let mut entries = [0; 3];
-        team.each(&mut entries, |k, entry| *entry = k);
-        assert_eq!(entries, [0, 1, 2]);
+        // Beside each other, as before: each waits for the others.
+        let (begun, until) = (AtomicUsize::new(0), Instant::now() + Duration::from_mins(1));
+        let mut all_begun = [false; 3];
+        team.each(&mut all_begun, |_, all| {
+            begun.fetch_add(1, Ordering::SeqCst);
+            while begun.load(Ordering::SeqCst) < 3 && Instant::now() < until {
+                std::thread::yield_now();
+            }
+            *all = begun.load(Ordering::SeqCst) == 3;
+        });
+        assert_eq!(all_begun, [true; 3]);
     }
 
     #[test]
@@ -325,7 +339,7 @@ mod tests {
     fn parked_workers_come_when_called() {
         let team = Team::new(2).expect("threads");
         for _ in 0..3 {
-            std::thread::sleep(std::time::Duration::from_millis(if cfg!(miri) { 1 } else { 60 }));
+            std::thread::sleep(Duration::from_millis(if cfg!(miri) { 1 } else { 60 }));
             let mut entries = [0; 2];
             team.each(&mut entries, |k, entry| *entry = k + 1);
             assert_eq!(entries, [1, 2]);
