@@ -78,7 +78,7 @@
 //! Instructions per step of 150 settled polygons (270 contacts), `soft`, 4 substeps, by callgrind, of a pile that is left
 //! alone: steps 600 to 620 of `lamina run polygons/150` (181,414 at commit 61f47dc, 181,737 in steps 1800 to 1820; 187,997 and
 //! 184,789 with 276 contacts since tolerances are of pairs, as it piles up otherwise). The gate's scene of the same name counts
-//! 309,691 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
+//! 309,674 (347,816 then): it takes over poses and velocities, not impulses, so that its pile moves
 //! again, and finds and prepares its contacts in every step.
 //!
 //! | lever | state |
