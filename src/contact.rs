@@ -16,11 +16,10 @@ mod row;
 mod table;
 
 use crate::lanes::{Lanes, ROW, Real};
+use places::Recoded;
 use table::PairTable;
 
 pub use places::Places;
-
-use places::Recoded;
 pub use row::{CONTACT_COLUMNS, ContactRow, GapsAndImpulses};
 
 /// Which features touch, the same from step to step while they do: for polygons bit 7 says whose face

@@ -9,11 +9,8 @@ use crate::lanes::f32s;
 use crate::scene::Scene;
 use crate::settings::{Broad, Settings};
 use crate::simulation::Simulation;
-use crate::world::World;
-
-pub use crate::workers::Workers;
-
 use crate::workers::Parts;
+use crate::world::World;
 
 pub use crate::broad::{BRUTE_LIMIT, BroadCounts, BroadPhase, SWEEP_LIMIT};
 pub use crate::column::BLOCK;
@@ -23,6 +20,7 @@ pub use crate::motion::{CONTACT_REUSE_DISTANCE, Motion, Plan, Warm};
 pub use crate::narrow::{MovedBodies, Narrow, Stride};
 pub use crate::solve::soft::{HERTZ_TIMES_SUBSTEP, PUSH_CAP};
 pub use crate::solve::{SceneNeeds, SolverContext, Solving, carries_impulses, pushes};
+pub use crate::workers::Workers;
 
 /// Why a scene did not get to where it was to be.
 pub type Failed = Box<dyn std::error::Error + Send + Sync>;

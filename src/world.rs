@@ -25,7 +25,6 @@ use crate::narrow::{MovedBodies, Narrow, Stride};
 use crate::settings::{Settings, Skip, StiffFields};
 use crate::solve::substep_group::Goal;
 use crate::solve::{self, SceneNeeds, SolverContext, Solving};
-
 use crate::workers::Workers;
 
 use made_from::MadeFrom;
@@ -271,7 +270,7 @@ impl<L: Lanes> World<L> {
         let repaced = goal.is_some_and(|goal| {
             solving.decide_substep_groups(goal, bodies, &mut self.narrow.manifolds, &self.joints, motion)
         });
-        let recut = (repaced || !seen.still)
+        let parts_changed = (repaced || !seen.still)
             && solving.divide(context.plan.workers.count(), bodies, &mut self.narrow.manifolds, motion);
         if repaced || !seen.still {
             // Where nothing has moved no pair was looked at: the lists are those of an earlier step.
@@ -280,7 +279,7 @@ impl<L: Lanes> World<L> {
             solving.prepare(
                 bodies,
                 (manifolds, looked_at),
-                seen.changed || repaced || recut,
+                seen.changed || repaced || parts_changed,
                 (context.plan.workers, motion),
             );
             solving.note_depth(|| self.narrow.deepest(bodies));
